@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* stiff: runs of tests/divided's stiff models, whose state chooses formulas, by radau and auto and by CVODE's BDF with
- * root finding, which begins anew at each crossing: medians of runs that take turns, and the largest error of their
- * outputs every 1/8 s, over the largest state. */
+/* stiff: runs of tests/series_switching's stiff models, whose state chooses formulas, by radau and auto and by CVODE's
+ * BDF with root finding, which begins anew at each crossing: medians of runs that take turns, and the largest error of
+ * their outputs every 1/8 s, over the largest state. */
 #include "stiff_models.h"
 #include "timing.h"
 

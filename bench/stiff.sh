@@ -13,7 +13,7 @@ for name in pressed flipping braked; do
 		prefix=${name}_$scheme$digits
 		"$build/plgen" --fast --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" \
 			-o "$work/${prefix}_pl.c" \
-			"tests/divided/$name.spec" 2>/dev/null
+			"tests/series_switching/$name.spec" 2>/dev/null
 		echo "extern const pl_model ${prefix}_model;" >>"$work/declared"
 		echo "	{\"$name\", \"$scheme\", $digits, &${prefix}_model}," >>"$work/table"
 	done

@@ -54,7 +54,7 @@ static bool make_step(struct work *w)
 	w->stepped = stepped_model(w->model, w->spec, &w->options.request);
 	w->step = w->stepped ? step_build(w->stepped) : NULL;
 	if (w->step)
-		w->options.request.form = w->step->model->asked.form;
+		w->options.request.form = w->step->model->request.form;
 	return w->step;
 }
 
@@ -69,7 +69,7 @@ static void try_all(void *context)
 static void leave_step_open(struct work *w)
 {
 	struct request *request = &w->options.request;
-	if (w->spec->required.needs == 0 || w->spec->asked.step || request->step || !w->spec->required.need[0].until)
+	if (w->spec->required.needs == 0 || w->spec->request.step || request->step || !w->spec->required.need[0].until)
 		return;
 	const struct node *until = w->spec->required.need[0].until;
 	request->step = format("(%s)/1000", text_between(until->start, until->end));
@@ -83,7 +83,7 @@ static bool make_of(struct work *w, const struct source *source)
 	struct request *request = &w->options.request;
 	w->spec = parse_spec(source);
 	leave_step_open(w);
-	if (!diagnostics_errors() && !request->scheme && !w->spec->asked.scheme && !request->solution) {
+	if (!diagnostics_errors() && !request->scheme && !w->spec->request.scheme && !request->solution) {
 		request->passed_over = refusal_of(try_all, w);
 		if (!request->passed_over)
 			return true;

@@ -68,7 +68,7 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 		scheme_of(scheme, &row);
 	const bool step_open = m->request->step_open;
 	struct alternative a = { .scheme = scheme, .single = single, .form = FORM_DIRECT };
-	if (!scheme_row(row)->expands || m->request->tolerance || spec->asked.tolerance) {
+	if (!scheme_row(row)->expands || m->request->tolerance || spec->request.tolerance) {
 		if (step_open)
 			try_steps(m, a);
 		else
@@ -100,7 +100,7 @@ static void try_scheme(struct measuring *m, const char *scheme)
 static void try_schemes(struct measuring *m)
 {
 	const struct spec *spec = m->model->spec;
-	if (m->request->scheme || spec->asked.scheme) {
+	if (m->request->scheme || spec->request.scheme) {
 		try_scheme(m, NULL);
 		return;
 	}

@@ -502,7 +502,7 @@ static void check_campbell(const struct options *options)
 static void check_fmu(const struct options *options)
 {
 	const size_t length = options->fmu ? strlen(options->fmu) : 0;
-	const struct { bool asked; const char *option; } against[] = {
+	const struct { bool requested; const char *option; } against[] = {
 		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
 		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
 		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
@@ -515,7 +515,7 @@ static void check_fmu(const struct options *options)
 	if (length < 5 || strcmp(options->fmu + length - 4, ".fmu") != 0)
 		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu));
 	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
-		if (against[i].asked)
+		if (against[i].requested)
 			wrong_usage(format("%s does not go with --fmu", against[i].option));
 }
 

@@ -45,7 +45,7 @@ static double shortest_period(const struct step *step)
 		fastest = fmax(fastest, fabs(mpfr_get_d(pole[i].im, MPFR_RNDN)));
 	for (int l = 0; l < system->loads; l++)
 		if (load_acts(system, &system->load[l]))
-			fastest = fmax(fastest, fabs(mpq_get_d(system->load[l].wave->w)));
+			fastest = fmax(fastest, fabs(mpq_get_d(system->load[l].forcing->w)));
 	return 2 * 3.14159265358979 / fastest;
 }
 

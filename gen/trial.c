@@ -245,7 +245,7 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 			a->certificate[i] = found;
 	}
 	if (spec) {
-		a->step_cost = cost_of_trial(&trial, model->needs.target, model->asked.single);
+		a->step_cost = cost_of_trial(&trial, model->needs.target, model->request.single);
 		a->cost = a->step_cost / roads->h;
 	}
 	a->why = trial.why ? trial.why : a->why;

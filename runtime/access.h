@@ -2,7 +2,7 @@
 /* access.h: NAME_init, NAME_set, NAME_get, NAME_time, NAME_status and NAME_hold, which convert between states of the
  * spec and of the step.  Included by the file of the model, which defines before it
  *
- *     PL_TYPE                    the model, with members y, t0, k, with a status status, with low words rest or carry
+ *     PL_TYPE                    the model, with members y, t0, k, with a status status, with low parts low or carry
  *     PL_MODAL                   1: s->y are modes: PL(to_modes)[], PL(from_modes)[], PL(dot)(row, x); s->set is as set
  *     PL_NORMAL                  so many normal modes, from which PL(of_modes)(which, mode, q) makes coordinates
  *     PL_MOMENTA                 1: s->y is PL(mass)[] times a state
@@ -10,8 +10,8 @@
  *                                PL_COLUMNS, times what PL(forced_loads)(s, load) gives; behind it stand the rows of
  *                                the states as written, whose product was s->start at the last set
  *     PL_WHOLE                   1: outputs read PL(kept)(s, x), of PL_RELATIVE too
- *     PL_COMPENSATED, PL_CARRIES        1: of each state what rounding took is in s->rest; of so many in s->carry
- *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of what may move as a whole; set, from
+ *     PL_COMPENSATED, PL_CARRIES        1: of each state what rounding took is in s->low; of so many in s->carry
+ *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of models with rigid-body modes; set, from
  *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
  *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
  *     PL_REFRESHED                1: loads have a refresh: since, PL(refresh_phasors)(s)
@@ -39,7 +39,7 @@ static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
         s->y[i] = y[i];
 #endif
 #if PL_COMPENSATED
-        s->rest[i] = 0;
+        s->low[i] = 0;
 #endif
     }
 #if PL_CARRIES > 0
@@ -114,20 +114,20 @@ static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
     for (i = 0; i < PL_STATES; i++) {
         const real z = x[i], sum = z + now[i], back = sum - z;
 #if PL_COMPENSATED
-        const real rest = s->rest[i];
+        const real low = s->low[i];
 #elif PL_RELATIVE
-        const real rest = 0;
+        const real low = 0;
 #else
-        const real rest = s->k == 0u ? s->rest[i] : 0;
+        const real low = s->k == 0u ? s->low[i] : 0;
 #endif
-        x[i] = sum + (((z - (sum - back)) + (now[i] - back)) + rest);
+        x[i] = sum + (((z - (sum - back)) + (now[i] - back)) + low);
     }
 }
 #endif
 
 #if PL_FORCED
 
-/* x = z + f, f the forced part: what rounds off in z = x - f is kept in rest */
+/* x = z + f, f the forced part: what rounds off in z = x - f is kept in low */
 static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
 {
     real now[PL_STATES];
@@ -137,7 +137,7 @@ static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
         const real f = now[i], z = x[i] - f, lost = z - x[i];
         s->y[i] = z;
 #if PL_COMPENSATED || !PL_RELATIVE
-        s->rest[i] = (x[i] - (z - lost)) - (f + lost);
+        s->low[i] = (x[i] - (z - lost)) - (f + lost);
 #else
         (void)lost;
 #endif
@@ -332,7 +332,7 @@ int PL(status)(const PL_TYPE *s)
     status |= s->status;
 #endif
 #if PL_COMPENSATED
-    status |= pl_not_finite(s->rest, PL_STATES);
+    status |= pl_not_finite(s->low, PL_STATES);
 #endif
     return status;
 }

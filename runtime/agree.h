@@ -4,7 +4,8 @@
 
 /* ---- what it asks of that file ---- */
 
-/* Between the numbers of regions one interval of an expression apart; its interval in a region; whether that can be */
+/* Between the numbers of regions one interval of a switching function apart; its interval in a region; whether that can
+ * be */
 static int stride_of(const contacts *m, int expression);
 static int interval_in(const contacts *m, int region, int expression);
 static int is_possible(const contacts *m, int region);

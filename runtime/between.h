@@ -2,7 +2,7 @@
 /* between.h: part of taylor.h: a step whose series is made anew on the way, as it serves a part of it, the loads change
  * their formulas, or the state meets what chooses formulas, an impact, a contact at rest, friction. */
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 #define PL_MET PL(contact)
 #define PL_MET_BY(s) (&(s)->contact)
 #define PL_INTERVAL p->contact->interval
@@ -15,16 +15,16 @@
 
 typedef struct PL(piece) { /* a part of a step */
     const PL_TYPE *s;
-    real *y, *rest;        /* the state, and what rounding took from it, `done` after the start of the step [h] */
+    real *y, *low;         /* the state, and what rounding took from it, `done` after the start of the step [h] */
     real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_ROOM(PL_TERMS)]; /* the series from there */
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
     real done, limit;      /* the loads change there, or the step ends */
     real longest;          /* that is tried; */
     int fresh;             /* nothing is known of how long it may be */
     int segment, parts;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(contact) *contact;
-    real work[PL_DIVIDED_WORK(PL_ORDER)];
+    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)];
     int splits;
 #endif
 #if PL_CONTACTS
@@ -55,7 +55,7 @@ static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
     p->contact = contact;
     p->tau = 0;
     p->when = PL(middle)(p->s);
-    PL(open)(&p->at, contact, p->y, p->rest, p->c[0], p->terms, p->work);
+    PL(open)(&p->at, contact, p->y, p->low, p->c[0], p->terms, p->work);
     p->at.expand = PL(again);
     p->at.from = p;
 }
@@ -88,7 +88,7 @@ static inline int PL(status_of)(const PL(piece) *p)
 
 #else
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 
 static inline void PL(watch)(PL(piece) *p, PL(contact) *contact)
 {
@@ -104,7 +104,7 @@ static inline int PL(expand_piece)(PL(piece) *p)
 {
     PL(expand_from)(p->s, p->start, p->slope, p->done * PL_H, PL(when)(p), p->segment, p->contact->interval, p->y, p->c,
                     p->terms);
-    if (!pl_divided_left(&PL(divided), p->c[0], p->terms, p->contact->interval, &p->contact->last)) {
+    if (!pl_series_switching_left(&PL(series_switching), p->c[0], p->terms, p->contact->interval, &p->contact->last)) {
         return 0;
     }
     return PL(pass_event)(p) ? 1 : -1;
@@ -112,7 +112,7 @@ static inline int PL(expand_piece)(PL(piece) *p)
 
 static inline real PL(meet)(PL(piece) *p, real *size)
 {
-    return pl_divided_next(&PL(divided), p->c[0], p->terms, p->contact->interval, *size, &p->splits,
+    return pl_series_switching_next(&PL(series_switching), p->c[0], p->terms, p->contact->interval, *size, &p->splits,
                            &p->contact->last, p->work);
 }
 
@@ -205,7 +205,7 @@ static inline int PL(go_on)(PL(piece) *p, real size)
         return PL_NOT_FINITE;
     }
     for (i = 0; i < PL_STATES; i++) {
-        p->y[i] = pl_accumulate(p->y[i], gain[i], 0, &p->rest[i]);
+        p->y[i] = pl_accumulate(p->y[i], gain[i], 0, &p->low[i]);
     }
     p->done = size < p->limit - p->done ? p->done + size : p->limit;
     return 0;
@@ -216,7 +216,7 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
 {
     const int begun = PL(expand_piece)(p);
     real size;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     real meets;
 #endif
     if (begun != 0) {
@@ -227,7 +227,7 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
     if (size == 0) {
         return PL_NOT_FINITE;
     }
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     meets = PL(meet)(p, &size);
     if (p->splits < 0) {
         return PL(gave_up)(p);
@@ -241,7 +241,7 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
     if (PL(go_on)(p, size) != 0) {
         return PL_LOST;
     }
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     if (meets < 0) {
         p->contact->last.expression = -1;
 #if PL_CONTACTS
@@ -259,21 +259,21 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
 
 /* y and what rounding took from it, `end` h later: 0; or what went wrong, and y as far as it went.  fresh: nothing is
  * known of how long a series may be */
-static int PL(between)(const PL_TYPE *s, const real u[], int fresh, real end, real y[PL_STATES], real rest[PL_STATES],
+static int PL(between)(const PL_TYPE *s, const real u[], int fresh, real end, real y[PL_STATES], real low[PL_STATES],
                        PL_MET *contact)
 {
     PL(piece) p;
     int wrong = 0, inaccurate = 0;
     p.s = s;
     p.y = y;
-    p.rest = rest;
+    p.low = low;
     PL(inputs_now)(s, u, p.start, p.slope);
     p.done = 0;
     p.longest = 1;
     p.fresh = fresh;
     p.segment = PL(segment_of)(s);
     p.parts = 0;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     p.splits = PL_MAX_SPLITS;
     PL(watch)(&p, contact);
 #else
@@ -293,15 +293,15 @@ static int PL(between)(const PL_TYPE *s, const real u[], int fresh, real end, re
 static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
 {
     PL(piece) p;
-    real y[PL_STATES], rest[PL_STATES];
+    real y[PL_STATES], low[PL_STATES];
     int i;
     for (i = 0; i < PL_STATES; i++) {
         y[i] = s->y[i];
-        rest[i] = 0;
+        low[i] = 0;
     }
     p.s = s;
     p.y = y;
-    p.rest = rest;
+    p.low = low;
     p.segment = PL(segment_of)(s);
     PL(inputs_now)(s, u, p.start, p.slope);
     PL(watch)(&p, contact);

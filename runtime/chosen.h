@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* chosen.h: the formulas that hold now: of loads, by the segment of time; those that the state chooses, by the interval
- * of each expression, which a state that was set has yet to find, and which a crossing changes.  Part of what a model's
- * file includes for its steps, after
+ * of each switching function, which a state that was set has yet to find, and which a crossing changes.  Part of what a
+ * model's file includes for its steps, after
  *
  *     PL(name), PL_TYPE          the model's prefix before a name; its type, with member y, and segment of several
  *     PL(contact)                with members crossings, crossing, total, interval, last, placed
- *     PL_EXPRESSIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
+ *     PL_SWITCHING_FUNCTIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
  *     PL_REGIONS                 1: the regions are numbered
  *     PL_WAY                     beside contacts, if what is watched goes by polynomials: their degree, PL(along)
@@ -14,11 +14,12 @@
  *     PL(expand_from), PL(inputs_now)   as taylor.h
  *     PL_AT_BREAKPOINTS          1: states are put onto them
  *     PL_IN_PARTS                1: a step goes from part to part, each within one segment; else as it likes
- *     PL(divided)                a pl_divided, of the series
- *     PL(breaks), PL(breakpoint) of each expression how many breakpoints; these, one expression behind the other */
+ *     PL(series_switching)                a pl_series_switching, of the series
+ * PL(breaks), PL(breakpoint) of each switching function how many breakpoints; these, one switching function behind the
+ * other */
 #include "numbers.h"
 
-#define PL_LOCATES (PL_ORDER > 0 && PL_EXPRESSIONS > 0 && !PL_CONTACTS)
+#define PL_LOCATES (PL_ORDER > 0 && PL_SWITCHING_FUNCTIONS > 0 && !PL_CONTACTS)
 
 /* ---- by time ---- */
 
@@ -110,7 +111,7 @@ static inline real PL(middle)(const PL_TYPE *s)
 
 /* ---- by the state ---- */
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 /* Of a state that was set: its intervals the next step finds, which knows its samples; until then they are the
  * lowest. */
 static inline void PL(forget)(PL(contact) *contact)
@@ -121,13 +122,13 @@ static inline void PL(forget)(PL(contact) *contact)
 #if PL_CONTACTS
     contact->rested = 0;
 #endif
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         contact->interval[i] = 0;
     }
 }
 
 #if PL_AT_BREAKPOINTS
-/* Where a crossing is, of the expression */
+/* Where a crossing is, of the switching function */
 static inline real PL(breakpoint_of)(const pl_crossing *crossing)
 {
     int i, place = crossing->breakpoint;
@@ -139,7 +140,7 @@ static inline real PL(breakpoint_of)(const pl_crossing *crossing)
 #endif
 #endif
 
-#if PL_EXPRESSIONS > 0 && !PL_CONTACTS
+#if PL_SWITCHING_FUNCTIONS > 0 && !PL_CONTACTS
 /* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */
 static int PL(cross)(PL(contact) *contact, real time)
 {
@@ -156,21 +157,21 @@ static int PL(cross)(PL(contact) *contact, real time)
 #endif
 
 #if PL_LOCATES
-/* The intervals of a state that was set.  That of one expression may choose what another is. */
+/* The intervals of a state that was set.  That of one switching function may choose what another is. */
 static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
 {
-    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_EXPRESSIONS];
+    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_SWITCHING_FUNCTIONS];
     real start[PL_INPUTS + 1], slope[PL_INPUTS + 1]; /* no array is empty */
     int i, again = PL_CHANGES;
     PL(inputs_now)(s, u, start, slope);
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         contact->interval[i] = 0;
     }
     contact->last.expression = -1;
     contact->placed = 1;
     do {
         PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c, terms);
-    } while (pl_divided_place(&PL(divided), c[0], terms, contact->interval) && again-- > 0);
+    } while (pl_series_switching_place(&PL(series_switching), c[0], terms, contact->interval) && again-- > 0);
 }
 #endif
 
@@ -207,18 +208,18 @@ static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
         const pl_event_impact *const p = &PL(along).impact[i];
         const real per = (p->upward ? dt : -dt) * p->per;
         for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
-            c[m + 1][p->expression] = per * c[m][PL_EXPRESSIONS + p->speed] / (real)(m + 1);
+            c[m + 1][p->expression] = per * c[m][PL_SWITCHING_FUNCTIONS + p->speed] / (real)(m + 1);
         }
     }
 }
 #endif
 
 /* An instant at which something is met, but for how the series is made anew there */
-static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], real rest[], real c[], real terms[],
+static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], real low[], real c[], real terms[],
                               real work[])
 {
     at->y = y;
-    at->rest = rest;
+    at->low = low;
     at->c = c;
     at->terms = terms;
     at->work = work;
@@ -240,12 +241,12 @@ static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], re
 
 /* ---- what is asked about it ---- */
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 #if PL_REGIONS
 int PL(region)(const PL_TYPE *s)
 {
     int i, region = 0;
-    for (i = PL_EXPRESSIONS - 1; i >= 0; i--) {
+    for (i = PL_SWITCHING_FUNCTIONS - 1; i >= 0; i--) {
         region = s->contact.interval[i] + (PL(breaks)[i] + 1) * region;
     }
     return region;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* columns.h: expressions beside a Taylor series, as columns of its coefficients, for the runtime's own use: by
+/* columns.h: switching functions beside a Taylor series, as columns of its coefficients, for the runtime's own use: by
  * crossings.c and events.c. */
 #ifndef PLRT_COLUMNS_H
 #define PLRT_COLUMNS_H
 
 #include "roots.h"
 
-typedef struct column { /* of the coefficients of a series: those of one expression */
-    const pl_divided *m;
+typedef struct column { /* of the coefficients of a series: those of one switching function */
+    const pl_series_switching *m;
     const real *first;
     real terms; /* the size of what its value at the start is summed from */
 } column;
@@ -44,7 +44,7 @@ static int starts_above(const column *e, real b)
     return 0;
 }
 
-static column column_of(const pl_divided *m, const real *c, const real *terms, int expression)
+static column column_of(const pl_series_switching *m, const real *c, const real *terms, int expression)
 {
     column e;
     e.m = m;

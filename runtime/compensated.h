@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* compensated.h: x on over a piece of a step, for the runtime's own use: by crossings.c and guards.c, and with what
  * rounding takes from x kept by crossings_compensated.c and guards_compensated.c, which define STATE_IS_COMPENSATED and
- * include them.  There x is `size` entries and then as many rests, so that x + rest is what is meant; breakpoints and
+ * include them.  There x is `size` entries and then their low parts, so that x + low part is the value; breakpoints and
  * guards see x, from which it differs by rounding. */
 #ifndef PLRT_COMPENSATED_H
 #define PLRT_COMPENSATED_H
@@ -21,7 +21,7 @@ static PL_APART real dot(int n, const real *row, const real *x)
 enum { WORDS = 2 }; /* of an entry of x, of A */
 
 /* y = e^{A h} x.  Phi: of each matrix e^{A h} - I in two words, n x n first ones and then n x n second ones */
-static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
+static void full_piece(int n, const real *Phi, int matrix, const real *x, real *y)
 {
     const real *gain = Phi + 2 * (ptrdiff_t)matrix * n * n, *second = gain + (ptrdiff_t)n * n;
     real *left = y + n;
@@ -36,25 +36,25 @@ static void whole_piece(int n, const real *Phi, int matrix, const real *x, real 
     }
 }
 
-/* y = e^{A d} x by a rung's e^{A d} - I in two words.  rest: not used */
-static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *rest)
+/* y = e^{A d} x by a rung's e^{A d} - I in two words.  x_low: not used */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *x_low)
 {
-    (void)rest;
-    whole_piece(n, pieces, rung, x, y);
+    (void)x_low;
+    full_piece(n, pieces, rung, x, y);
 }
 
 /* row . x + small in two words */
 static pl_two row_times(int n, const real *row, const real *x, real small)
 {
-    real sum = 0, rest = 0;
+    real sum = 0, x_low = 0;
     int j;
     for (j = 0; j < n; j++) {
         if (row[j] < 0 || row[j] > 0) {
             const pl_two product = two_product(row[j], x[j]);
-            sum = pl_accumulate(sum, product.hi, product.lo, &rest);
+            sum = pl_accumulate(sum, product.hi, product.lo, &x_low);
         }
     }
-    return two_sum(sum, rest + small);
+    return two_sum(sum, x_low + small);
 }
 
 /* The coefficients of x(s), and the second words of the first derivatives: where x begins on a breakpoint, forces that
@@ -75,10 +75,10 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
 
 /* x from where the polynomial starts on to s.  An entry that its gain takes away but for the gain's own rounding is 0:
  * what is on a breakpoint at 0 has no other size there that what remains could be held against. */
-static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *rest)
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *x_low)
 {
     int i, k;
-    (void)rest;
+    (void)x_low;
     for (i = 0; i < n; i++) {
         real gain = 0;
         for (k = degree; k > 0; k--) {
@@ -91,7 +91,7 @@ static void part_of_piece(int n, int degree, const real *coefficients, const rea
     }
 }
 
-/* value . x of a jump, which is linear in the state, so that the rest goes along.  all: rows of n first words and n
+/* value . x of a jump, which is linear in the state, so that the low part goes along.  all: rows of n first words and n
  * second ones; value: two words */
 static inline void value_of(int n, const real *all, int row, const real *x, real *value)
 {
@@ -111,7 +111,7 @@ static inline void put_value(int n, int state, const real *value, real *x)
     x[n + state] = value[1];
 }
 
-/* What is put on a guard has no rest: it is there. */
+/* What is put on a guard has no x_low: it is there. */
 static inline void take_from(int n, int state, real what, real *x)
 {
     if (what < 0 || what > 0) {
@@ -125,30 +125,30 @@ static inline void take_from(int n, int state, real what, real *x)
 enum { WORDS = 1 };
 
 /* y = Phi x.  Phi: e^{A h} of each matrix, n x n. */
-static void whole_piece(int n, const real *Phi, int matrix, const real *x, real *y)
+static void full_piece(int n, const real *Phi, int matrix, const real *x, real *y)
 {
     pl_multiply(n, n, Phi + (ptrdiff_t)matrix * n * n, x, y);
 }
 
 /* x + gain + *rest, and *left what rounding takes from that, where x is the largest */
-static real plus_gain(real x, real gain, real rest, real *left)
+static real plus_gain(real x, real gain, real x_low, real *left)
 {
-    const real more = gain + rest, sum = x + more;
+    const real more = gain + x_low, sum = x + more;
     *left = more - (sum - x);
     return sum;
 }
 
 /* y = e^{A d} x; what keeps most of itself is moved by its change, so that many short pieces do not repeat the rounding
- * of a number near 1.  rest: what rounding has taken from x in pieces before, and behind it of y; n each */
-static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *rest)
+ * of a number near 1.  x_low: what rounding has taken from x in pieces before, and behind it of y; n each */
+static void rung_piece(int n, const real *pieces, int rung, const real *x, real *y, real *x_low)
 {
     const real *rows = pieces + (ptrdiff_t)rung * (n + 1) * n, *stays = rows + n * n;
     int i;
     pl_multiply(n, n, rows, x, y);
     for (i = 0; i < n; i++) {
-        rest[n + i] = 0;
+        x_low[n + i] = 0;
         if (stays[i] > 0) {
-            y[i] = plus_gain(x[i], y[i], rest[i], &rest[n + i]);
+            y[i] = plus_gain(x[i], y[i], x_low[i], &x_low[n + i]);
         }
     }
 }
@@ -159,12 +159,12 @@ static void expand_piece(int n, int degree, const real *A, real dt, const real *
     expand(n, degree, A, dt, x, coefficients);
 }
 
-/* rest: as for rung_piece, of x alone; NULL where pieces are not many */
-static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *rest)
+/* x_low: as for rung_piece, of x alone; NULL where pieces are not many */
+static void part_of_piece(int n, int degree, const real *coefficients, const real *low, real s, real *x, real *x_low)
 {
     int i, k;
     (void)low;
-    if (!rest) {
+    if (!x_low) {
         sum_up(n, degree, coefficients, s, x);
         return;
     }
@@ -173,7 +173,7 @@ static void part_of_piece(int n, int degree, const real *coefficients, const rea
         for (k = degree; k > 0; k--) {
             gain = (gain + coefficients[k * n + i]) * s;
         }
-        x[i] = plus_gain(x[i], gain, rest[i], &rest[i]);
+        x[i] = plus_gain(x[i], gain, x_low[i], &x_low[i]);
     }
 }
 

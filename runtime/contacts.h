@@ -5,9 +5,9 @@
  *
  * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
  * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations.  contacts: impacts, as
- * impact[k] with expression, breakpoint, upward and restitution; h; max_events.  instant: a state and what stands of
- * it, with time [s] after the start of the step, and chain.  The enclosed run of the generator (gen/step/struck.c) goes
- * by it, too, with limits of its own, and names of roots.h. */
+ * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events.
+ * instant: a state and what stands of it, with time [s] after the start of the step, and chain.  The enclosed run of
+ * the generator (gen/step/struck.c) goes by it, too, with limits of its own, and names of roots.h. */
 
 /* How many impacts there may be at one instant before they are ended, and how many more before they are ended again;
  * how many are listed; how many events there may be in a step; how often speeds are taken from what comes to rest; how
@@ -45,7 +45,7 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 10
 #endif
 #define DEEP 64
 
-/* An expression at rest, or next to where it would be with no velocity */
+/* A switching function at rest, or next to where it would be with no velocity */
 typedef struct resting {
     int expression, held; /* the interval in which it is held */
     int impact;           /* whose contact rests there; -1: friction sticks */
@@ -58,7 +58,7 @@ typedef struct resting {
 static real unit(const contacts *m);
 static real step_of(const contacts *m);
 
-/* The interval of an expression, and into another one; renew: behind such changes, what stands of the state */
+/* The interval of a switching function, and into another one; renew: behind such changes, what stands of the state */
 static int interval_of(const contacts *m, const instant *at, int expression);
 static void go_to(const contacts *m, instant *at, int expression, int interval);
 static void renew(const contacts *m, instant *at);
@@ -89,7 +89,7 @@ static void put_on(const contacts *m, instant *at, int k);
 /* What is held is put where it is held. */
 static void keep(const contacts *m, instant *at);
 
-/* Each expression into the interval where it is now; jumped: past a bounce, too */
+/* Each switching function into the interval where it is now; jumped: past a bounce, too */
 static void follow(const contacts *m, instant *at, int jumped);
 
 /* An event is listed where there is room; 0: there is none, and no speed is lost, so that it may not go on. */
@@ -207,7 +207,7 @@ static int touches(const contacts *m, const instant *at, int k)
     return touches_by(m, at, k, 0);
 }
 
-/* Whether a bounce stops an expression that would go this way */
+/* Whether a bounce stops a switching function that would go this way */
 static int is_stopped(const contacts *m, const instant *at, int expression, int way)
 {
     int k;

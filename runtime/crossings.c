@@ -63,7 +63,7 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
 
 /* ---- a piece that stays clear ---- */
 
-/* Whether every expression, known to be within low .. high, is clear of the breakpoints beside it */
+/* Whether every switching function, known to be within low .. high, is clear of the breakpoints beside it */
 static int clear(const pl_switching *m, int region, const real *low, const real *high)
 {
     walk w;
@@ -142,7 +142,7 @@ typedef struct event { /* a crossing */
     real s;
     int any;
     int expression, breakpoint, upward;
-    int stride; /* of the expression, between regions */
+    int stride; /* of the switching function, between regions */
 } event;
 
 static const event no_event = {1, 0, -1, 0, 0, 0};
@@ -194,7 +194,7 @@ static int is_event_free(const pl_switching *m, const instant *at, climb *up, co
         : stays_event_free(m, at->c, at->x, y, work);
 }
 
-/* An expression that has left its interval, other than by a crossing, goes into that where it is. */
+/* A switching function that has left its interval, other than by a crossing, goes into that where it is. */
 static void take_up(const pl_switching *m, instant *at, real time)
 {
     walk w;
@@ -246,7 +246,7 @@ void pl_switching_move(const pl_switching *m, int matrix, int degree, real dt, r
 
 /* ---- events of a series ---- */
 
-int pl_divided_place(const pl_divided *m, const real *c, const real *terms, int *interval)
+int pl_series_switching_place(const pl_series_switching *m, const real *c, const real *terms, int *interval)
 {
     const real *at = m->at;
     int i, k, changed = 0;
@@ -262,7 +262,7 @@ int pl_divided_place(const pl_divided *m, const real *c, const real *terms, int 
     return changed;
 }
 
-int pl_divided_rises(const pl_divided *m, const real *c, const real *terms, int *interval)
+int pl_series_switching_rises(const pl_series_switching *m, const real *c, const real *terms, int *interval)
 {
     const real *at = m->at;
     int i, k, changed = 0;
@@ -293,7 +293,8 @@ static void set_crossing(pl_crossing *crossing, int expression, int breakpoint, 
     crossing->upward = upward;
 }
 
-int pl_divided_left(const pl_divided *m, const real *c, const real *terms, const int *interval, pl_crossing *crossing)
+int pl_series_switching_left(const pl_series_switching *m, const real *c, const real *terms, const int *interval,
+                             pl_crossing *crossing)
 {
     const pl_crossing last = *crossing;
     const real *at = m->at;
@@ -316,7 +317,8 @@ int pl_divided_left(const pl_divided *m, const real *c, const real *terms, const
     return 0;
 }
 
-real pl_divided_next(const pl_divided *m, const real *c, const real *terms, const int *interval, real end,
+real pl_series_switching_next(const pl_series_switching *m, const real *c, const real *terms, const int *interval,
+                              real end,
                      int *splits, pl_crossing *crossing, real *work)
 {
     const real *at = m->at;

@@ -7,11 +7,11 @@
 #undef pl_event_split
 #undef pl_event_split_begin
 #undef pl_event_split_flow
-#undef pl_divided
-#undef pl_divided_left
-#undef pl_divided_next
-#undef pl_divided_place
-#undef pl_divided_rises
+#undef pl_series_switching
+#undef pl_series_switching_left
+#undef pl_series_switching_next
+#undef pl_series_switching_place
+#undef pl_series_switching_rises
 #undef pl_entry
 #undef pl_equations
 #undef pl_equations_at

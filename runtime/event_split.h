@@ -10,16 +10,16 @@
  * PL_FAST_PATH, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
  *     PL_CARRIES                 entries of the member carry, which a step changes
  *     PL_MAX_SPLITS              halvings in the search of a crossing
- *     PL_TERMS                   what is watched: expressions, and behind them what the search of events looks at
+ * PL_TERMS                   what is watched: switching functions, and behind them what the search of events looks at
  *
- *     PL(column)[]               of each expression: where it stands in the series, of order 2
- *     PL(passing)                a pl_divided of cubics of each
+ *     PL(column)[]               of each switching function: where it stands in the series, of order 2
+ *     PL(passing)                a pl_series_switching of cubics of each
  *     PL(slope_matrix)[][][]     of each segment: A [1/s], x' = A x where no force changes but by its derivatives
  *     PL(acting)(s, start, slope, tau, acting)       what acts, tau [s] after now
  *     PL(forces_at)(s, start, slope, tau, when, segment, interval, y, force)      the remainder
  *     PL(ends_at)(s, start, slope, tau, when, segment, interval, y, e, terms)     of all that is watched the value and
  *                                h times the slope; the sizes of the terms of the value
- *     PL(whole)(s, u, start, slope, when, interval)  s->y one step on, by the scheme; PL_IN_MODES: of normal.h
+ *     PL(full_step)(s, u, start, slope, when, interval)  s->y one step on, by the scheme; PL_IN_MODES: of normal.h
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
  *     PL(events), PL(along)      where there are contacts: a pl_events of the series; of polynomials along a part
  *
@@ -56,7 +56,7 @@ typedef struct PL(piece) { /* a part of a step */
     real longest;                 /* that is tried [h] */
     int segment, splits;
 #if PL_CONTACTS
-    real rest[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_ORDER)];
+    real low[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_ORDER)];
     pl_instant at;                /* what happens where it begins; law: the series from there */
 #endif
 } PL(piece);
@@ -162,14 +162,14 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
 
 /* ---- what it meets ---- */
 
-/* The expressions at y, `at` h after now, by the formulas that hold over the part */
+/* The switching functions at y, `at` h after now, by the formulas that hold over the part */
 static PL_APART void PL(look)(const PL(piece) *p, real at, const real y[PL_STATES], real e[][PL_TERMS],
                             real terms[PL_TERMS])
 {
     PL(ends_at)(p->s, p->start, p->slope, at * PL_H, PL(when)(p), p->segment, p->contact->interval, y, e, terms);
 }
 
-/* How far off its breakpoint an expression still is on it */
+/* How far off its breakpoint a switching function still is on it */
 static inline real PL(slack)(real noise, real terms)
 {
 #if PL_FAST_PATH
@@ -195,7 +195,7 @@ static int PL(is_held_on)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL
     for (i = 0; i < PL(along).holds; i++) {
         const pl_hold *const h = &PL(along).hold[i];
         for (up = 0; up < 2 && interval[h->expression] == h->interval; up++) {
-            const int watch = up ? h->up : h->down, k = PL_EXPRESSIONS + watch;
+            const int watch = up ? h->up : h->down, k = PL_SWITCHING_FUNCTIONS + watch;
             if (watch >= 0 && !(c[0][k] < 0 && c[0][k] + size * c[1][k] / 3 < 0 && d[0][k] < 0 &&
                                 d[0][k] - size * d[1][k] / 3 < 0)) {
                 return 0;
@@ -206,9 +206,9 @@ static int PL(is_held_on)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL
 }
 #endif
 
-/* Whether no expression comes near the end of its interval, but for `noise` of its terms, in a part of this size.  c:
- * values and slopes [1/h] at its start, d: at its end: the cubic that has them is as exact as the step, and lies within
- * its Bezier points. */
+/* Whether no switching function comes near the end of its interval, but for `noise` of its terms, in a part of this
+ * size.  c: values and slopes [1/h] at its start, d: at its end: the cubic that has them is as exact as the step, and
+ * lies within its Bezier points. */
 static int PL(stays)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS], const int interval[],
                      real size, const real terms[PL_TERMS], real noise)
 {
@@ -219,7 +219,7 @@ static int PL(stays)(const real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERM
         return 0;
     }
 #endif
-    for (i = 0; i < PL_EXPRESSIONS; at += PL(breaks)[i++]) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; at += PL(breaks)[i++]) {
         const real a = c[0][i], b = a + size * c[1][i] / 3, z = d[0][i], y = z - size * d[1][i] / 3;
         const real slack = PL(slack)(noise, terms[i]);
         if (PL_CONTACTS && interval[i] > 0 && interval[i] < PL(breaks)[i] &&
@@ -258,13 +258,13 @@ static void PL(make_cubics)(real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TER
 }
 
 #if !PL_CONTACTS
-/* When, in a part of this size [h], an expression first leaves its interval; below 0: none does */
+/* When, in a part of this size [h], a switching function first leaves its interval; below 0: none does */
 static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
                       const real terms[PL_TERMS], real size, pl_crossing *crossing)
 {
-    real work[PL_DIVIDED_WORK(3)];
+    real work[PL_SERIES_SWITCHING_WORK(3)];
     PL(make_cubics)(c, d, size);
-    return pl_divided_next(&PL(passing), c[0], terms, p->contact->interval, size, &p->splits, crossing, work);
+    return pl_series_switching_next(&PL(passing), c[0], terms, p->contact->interval, size, &p->splits, crossing, work);
 }
 
 #endif
@@ -352,7 +352,7 @@ static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
     pl_crossing found;
     int i;
     PL(look)(p, p->done, y, c, terms);
-    if (pl_divided_left(&PL(passing), c[0], terms, p->contact->interval, &p->contact->last)) {
+    if (pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, &p->contact->last)) {
         return PL(pass_event)(p);
     }
     to = p->limit - p->done < p->longest ? p->limit : p->done + p->longest;
@@ -423,7 +423,7 @@ static PL_APART int PL(is_event_free)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS]
                                  const real terms[PL_TERMS], pl_crossing *crossing)
 {
     *crossing = p->contact->last;
-    if (pl_divided_left(&PL(passing), c[0], terms, p->contact->interval, crossing)) {
+    if (pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, crossing)) {
         crossing->time = -1;
         return 0;
     }
@@ -458,7 +458,7 @@ static inline int PL(stands)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const r
 #endif
 }
 
-/* The expressions at the start of the step */
+/* The switching functions at the start of the step */
 static inline void PL(look_first)(const PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
 {
 #if PL_KEEPS_CHECK
@@ -504,8 +504,8 @@ static inline void PL(begin_anew)(PL_TYPE *s)
 #endif
 }
 
-/* Where no expression comes near a breakpoint the step stands; else it is looked at closely, and made in parts where
- * one is passed. */
+/* Where no switching function comes near a breakpoint the step stands; else it is looked at closely, and made in parts
+ * where one is passed. */
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
     real c[PL_WAY + 1][PL_TERMS], d[2][PL_TERMS], terms[PL_TERMS], spare[PL_TERMS], y[PL_STATES];
@@ -525,9 +525,9 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     }
 #endif
 #if PL_IN_MODES
-    PL(whole)(s);
+    PL(full_step)(s);
 #else
-    PL(whole)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
+    PL(full_step)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
 #endif
     PL(look)(&p, 1, s->y, d, spare);
     if (PL(stands)(&p, c, (const real (*)[PL_TERMS])d, terms, &crossing)) {

@@ -24,10 +24,10 @@ static void set_freed(const pl_events *m, pl_instant *at, int hold, int up)
     at->freed = hold;
 }
 
-/* An expression outside of its interval, or what is held beyond what can */
+/* A switching function outside of its interval, or what is held beyond what can */
 static int has_left(const pl_events *m, pl_instant *at)
 {
-    const pl_divided *d = m->divided;
+    const pl_series_switching *d = m->switching;
     const real *b = d->at;
     int i, up;
     for (i = 0; i < d->expressions; b += d->breaks[i++]) {
@@ -113,7 +113,7 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
 
 static real first_event(const pl_events *m, pl_instant *at, real end, int *splits)
 {
-    const pl_divided *d = m->divided;
+    const pl_series_switching *d = m->switching;
     const real *b = d->at, along = end * at->unit;
     real first = 1;
     int i, up, any = 0;
@@ -239,22 +239,22 @@ real pl_events_end(const pl_events *m, pl_instant *at, real end, int *splits)
 
 static real breakpoint_of(const pl_events *m, const pl_event_impact *p)
 {
-    const real *b = m->divided->at;
+    const real *b = m->switching->at;
     int i;
     for (i = 0; i < p->expression; i++) {
-        b += m->divided->breaks[i];
+        b += m->switching->breaks[i];
     }
     return b[p->breakpoint];
 }
 
-/* Whether an expression is beyond the guard of this bounce, s on, by more than rounding and `least` */
+/* Whether a switching function is beyond the guard of this bounce, s on, by more than rounding and `least` */
 static int is_beyond(const pl_events *m, const pl_instant *at, const pl_event_impact *p, real s, real least)
 {
-    const column e = column_of(m->divided, at->c, at->terms, p->expression);
+    const column e = column_of(m->switching, at->c, at->terms, p->expression);
     const real b = breakpoint_of(m, p);
     real value = 0, terms = 0;
     int k;
-    for (k = m->divided->degree; k >= 0; k--) {
+    for (k = m->switching->degree; k >= 0; k--) {
         value = value * s + column_at(&e, k);
         terms = terms * s + magnitude(column_at(&e, k));
     }
@@ -275,7 +275,7 @@ int pl_events_places(const pl_events *m, const pl_instant *at, real s, real leas
 
 static int starting_interval(const pl_events *m, const pl_instant *at, int expression, const real *b)
 {
-    const pl_divided *d = m->divided;
+    const pl_series_switching *d = m->switching;
     const column e = column_of(d, at->c, at->terms, expression);
     int above = 0, k;
     for (k = 0; k < d->breaks[expression]; k++) {
@@ -294,7 +294,7 @@ static int starting_interval(const pl_events *m, const pl_instant *at, int expre
 
 void pl_events_place(const pl_events *m, pl_instant *at)
 {
-    const pl_divided *d = m->divided;
+    const pl_series_switching *d = m->switching;
     int again = 1, rounds, i;
     for (i = 0; i < d->expressions; i++) {
         at->interval[i] = 0;

@@ -3,11 +3,11 @@
  * of the entries of x and with bounds which say that it is there and that nothing comes before it.  All else is left to
  * the search of the runtime.
  *
- * Times are in parts of h, and so are derivatives.  An expression e that is off a breakpoint b by g = sign (e - b),
- * less than 0 at the start, meets it at z first where g(z) = 0 and g(z - s)/s stays below 0.  That quotient is -g'(z)
- * at s = 0 and g(0)/z at s = z, and off the chord between them by at most z^2/24 max|g'''|, since its second derivative
- * is at most a third of that.  Behind the crossing (e - b)/s keeps its sign likewise.  Where e comes back to b, the
- * same holds of (e - b)/s in the place of e - b, whose third derivative is at most a quarter of the fourth of e.
+ * Times are in parts of h, and so are derivatives.  A switching function e that is off a breakpoint b by g = sign (e -
+ * b), less than 0 at the start, meets it at z first where g(z) = 0 and g(z - s)/s stays below 0.  That quotient is
+ * -g'(z) at s = 0 and g(0)/z at s = z, and off the chord between them by at most z^2/24 max|g'''|, since its second
+ * derivative is at most a third of that.  Behind the crossing (e - b)/s keeps its sign likewise.  Where e comes back to
+ * b, the same holds of (e - b)/s in the place of e - b, whose third derivative is at most a quarter of the fourth of e.
  *
  * Included by search.h, which says what the model's file defines for both; and beside that
  *
@@ -21,26 +21,26 @@
  *     PL(matrix)                 [region]: `which` of the systems
  *     PL(slack), PL(jerk)        [which][i]: what rounding may do to e and h e'; h^3/24 e''' at most, times |x|
  *
- *     PL(expression)(i, x)       expression i
+ *     PL(switching_function)(i, x)       switching function i
  *     PL(along)(row, x), PL(sizes)(row, x), PL(most)(row, x)     row x; with |x|; of a bound, where what is never above
  *                                1 stands once
- *     PL(bounds)(which, x, off)  how far each expression is off its chord over h or less, at most
+ *     PL(bounds)(which, x, off)  how far each switching function is off its chord over h or less, at most
  *     PL(advance)(which, x, end) e^{A h} x
  *     PL(turn_once)(which, x, d), PL(move)(which, x, s, gain)    h A x; e^{A h s} x - x, by its Taylor polynomial
  *     PL(size_of)(x)             the sum of |x| */
 
 /* Of a step, in one region */
 typedef struct PL(stretch) {
-    double done, rest, length; /* before it, to the end of the step; looked at */
+    double done, left, length; /* before it, to the end of the step; looked at */
     int region, which;
-    int passed, behind;        /* expression that comes from an end of its interval; which end */
+    int passed, behind;        /* switching function that comes from an end of its interval; which end */
 } PL(stretch);
 
 static void PL(next_stretch)(PL(stretch) *p, double gone, int region, int which, int passed, int behind)
 {
     p->done += gone;
     p->length = 1.0 - p->done;
-    p->rest = p->length;
+    p->left = p->length;
     p->region = region;
     p->which = which;
     p->passed = passed;
@@ -54,16 +54,16 @@ static int PL(between)(double low, double high, double from, double to, double o
 }
 
 /* Whether what comes to b at z, to `noise`, certainly was not there before, nor at the other end, far, of its interval;
- * and is beyond b by more than noise before `rest`.  leaving, slope: its derivatives at 0 and z, up or down as it goes
+ * and is beyond b by more than noise before `left`.  leaving, slope: its derivatives at 0 and z, up or down as it goes
  * there; more: what its slope may be off those of the chord; off: at most off its own chord over h; behind: it comes
  * from an end, back: from b */
 static int PL(passes)(double sign, double from, double b, double far, double leaving, double slope, double noise,
-                      double more, double z, double rest, double off, int behind, int back)
+                      double more, double z, double left, double off, int behind, int back)
 {
-    if (!(z > 0.0 && z < rest)) {
+    if (!(z > 0.0 && z < left)) {
         return 0;
     }
-    if (!((rest - z) * slope > 2.0 * noise && slope * slope > 16.0 * off * noise)) {
+    if (!((left - z) * slope > 2.0 * noise && slope * slope > 16.0 * off * noise)) {
         return 0;
     }
     if (back != 0) {
@@ -115,7 +115,7 @@ static double PL(cubic_zero)(double from, double to, double leaving, double arri
     return t;
 }
 
-/* How far on it is to where an expression has gained so much, by the inverse series of the polynomial of these
+/* How far on it is to where a switching function has gained so much, by the inverse series of the polynomial of these
  * derivatives */
 static double PL(inverse)(double gain, double slope, double bend, double turn)
 {
@@ -124,30 +124,30 @@ static double PL(inverse)(double gain, double slope, double bend, double turn)
     return z * (1.0 - z * (second - z * (2.0 * second * second - third)));
 }
 
-/* What rounding may do to expression i beside b; 8 units in the last place of 1, as in the search */
+/* What rounding may do to switching function i beside b; 8 units in the last place of 1, as in the search */
 static double PL(noise)(int which, int i, double b, const double x[PL_SIZE])
 {
     return PL(most)(PL(slack)[which][i], x) + 1.7763568394002505e-15 * pl_magnitude(b);
 }
 
-/* h e' of expression i */
+/* h e' of switching function i */
 static double PL(slope)(int which, int i, const double x[PL_SIZE])
 {
     return 3.0 * PL(along)(PL_TANGENT[which][i], x);
 }
 
-/* Whether expression i certainly keeps off the ends of its interval over h times `rest`, from x to end: by its chord,
- * then by its cubic, which is within its Bezier points.  behind: the end it comes from, or -1; it keeps off that one,
- * b, where (e - b)/s does not come to 0 */
+/* Whether switching function i certainly keeps off the ends of its interval over h times `left`, from x to end: by its
+ * chord, then by its cubic, which is within its Bezier points.  behind: the end it comes from, or -1; it keeps off that
+ * one, b, where (e - b)/s does not come to 0 */
 static int PL(keeps)(int region, int which, int i, int behind, const double x[PL_SIZE], const double end[PL_SIZE],
-                     double rest, double off)
+                     double left, double off)
 {
-    const double from = PL(expression)(i, x), to = PL(expression)(i, end), two = rest * rest;
+    const double from = PL(switching_function)(i, x), to = PL(switching_function)(i, end), two = left * left;
     double low = PL(within)[region][i][0], high = PL(within)[region][i][1], cubic_error;
     if (behind >= 0) {
         const double sign = behind ? -1.0 : 1.0, b = behind ? high : low;
         const double noise = PL(noise)(which, i, b, x), jerk = two * PL(most)(PL(jerk)[which][i], x);
-        if (!(sign * PL(slope)(which, i, x) > noise + jerk && sign * (to - b) > noise + rest * jerk)) {
+        if (!(sign * PL(slope)(which, i, x) > noise + jerk && sign * (to - b) > noise + left * jerk)) {
             return 0;
         }
         if (behind != 0) {
@@ -161,30 +161,30 @@ static int PL(keeps)(int region, int which, int i, int behind, const double x[PL
     }
     cubic_error = two * two * PL(sizes)(PL_CUBIC_ERROR[which][i], x);
     return PL(between)(low, high, from, to, cubic_error) &&
-           PL(between)(low, high, from + rest * PL(along)(PL_TANGENT[which][i], x),
-                       to - rest * PL(along)(PL_TANGENT[which][i], end), cubic_error);
+           PL(between)(low, high, from + left * PL(along)(PL_TANGENT[which][i], x),
+                       to - left * PL(along)(PL_TANGENT[which][i], end), cubic_error);
 }
 
 /* Whether it surely meets the lower or the upper end at y, after h times z, and none before; and passes it by more than
- * rounding before h times `rest` */
+ * rounding before h times `left` */
 static int PL(meets)(int region, int which, int i, int up, int behind, const double x[PL_SIZE],
-                     const double y[PL_SIZE], double z, double rest, double off)
+                     const double y[PL_SIZE], double z, double left, double off)
 {
     const double sign = up ? 1.0 : -1.0, b = PL(within)[region][i][up];
     const double noise = PL(noise)(which, i, b, x), zz = z * z;
     const double more = behind == up ? 4.0 * z * zz * PL(sizes)(PL_CUBIC_ERROR[which][i], x)
                                      : zz * PL(most)(PL(jerk)[which][i], x);
-    return pl_magnitude(PL(expression)(i, y) - b) <= noise &&
-           PL(passes)(sign, PL(expression)(i, x), b, PL(within)[region][i][!up], sign * PL(slope)(which, i, x),
-                      sign * PL(slope)(which, i, y), noise, more, z, rest, off, behind >= 0, behind == up);
+    return pl_magnitude(PL(switching_function)(i, y) - b) <= noise &&
+           PL(passes)(sign, PL(switching_function)(i, x), b, PL(within)[region][i][!up], sign * PL(slope)(which, i, x),
+                      sign * PL(slope)(which, i, y), noise, more, z, left, off, behind >= 0, behind == up);
 }
 
-/* About where it is b, from x to end over h times `rest`; back: it comes from b */
+/* About where it is b, from x to end over h times `left`; back: it comes from b */
 static double PL(guess)(int which, int i, double sign, double b, int back, const double x[PL_SIZE],
-                        const double end[PL_SIZE], double rest)
+                        const double end[PL_SIZE], double left)
 {
-    return rest * PL(cubic_zero)(sign * (PL(expression)(i, x) - b), sign * (PL(expression)(i, end) - b),
-                                 sign * rest * PL(slope)(which, i, x), sign * rest * PL(slope)(which, i, end), back);
+    return left * PL(cubic_zero)(sign * (PL(switching_function)(i, x) - b), sign * (PL(switching_function)(i, end) - b),
+                                 sign * left * PL(slope)(which, i, x), sign * left * PL(slope)(which, i, end), back);
 }
 
 /* Moves x on to y, where it is b, near h times z; returns z.  From what is gained since x: of e - b itself more is
@@ -192,7 +192,7 @@ static double PL(guess)(int which, int i, double sign, double b, int back, const
 static double PL(reach)(int which, int i, double b, const double x[PL_SIZE], double z, double y[PL_SIZE])
 {
     double d[3][PL_SIZE], gain[PL_SIZE];
-    const double far = b - PL(expression)(i, x);
+    const double far = b - PL(switching_function)(i, x);
     int j, k;
     PL(move)(which, x, z, gain);
     for (k = 0; k < 4; k++) {
@@ -203,8 +203,9 @@ static double PL(reach)(int which, int i, double b, const double x[PL_SIZE], dou
         PL(turn_once)(which, y, d[0]);
         PL(turn_once)(which, d[0], d[1]);
         PL(turn_once)(which, d[1], d[2]);
-        step = PL(inverse)(far - PL(expression)(i, gain), PL(expression)(i, d[0]), PL(expression)(i, d[1]),
-                           PL(expression)(i, d[2]));
+        step = PL(inverse)(far - PL(switching_function)(i, gain), PL(switching_function)(i, d[0]),
+                           PL(switching_function)(i, d[1]),
+                           PL(switching_function)(i, d[2]));
         z += step;
         if (pl_magnitude(step) < 1e-4) {
             for (j = 0; j < PL_SIZE; j++) {
@@ -228,7 +229,7 @@ static double PL(reach)(int which, int i, double b, const double x[PL_SIZE], dou
 static void PL(go)(int which, double part, double x[PL_VECTOR], const double end[PL_SIZE])
 {
 #if PL_COMPENSATED
-    double work[PL_SWITCHING_COMPENSATED_WORK(PL_SIZE, PL_EXPRESSIONS, PL_MOVES)];
+    double work[PL_SWITCHING_COMPENSATED_WORK(PL_SIZE, PL_SWITCHING_FUNCTIONS, PL_MOVES)];
     pl_switching_compensated_move(&PL(switching), which, PL_MOVES, part * PL_H, x, work);
     (void)end;
 #else
@@ -245,15 +246,15 @@ static void PL(go)(int which, double part, double x[PL_VECTOR], const double end
  * less; -2: nor of less */
 static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SIZE], pl_crossing *crossing)
 {
-    double off[PL_EXPRESSIONS], y[PL_SIZE], z = 2.0;
-#if PL_EXPRESSIONS > 1
-    int unclear[PL_EXPRESSIONS];
+    double off[PL_SWITCHING_FUNCTIONS], y[PL_SIZE], z = 2.0;
+#if PL_SWITCHING_FUNCTIONS > 1
+    int unclear[PL_SWITCHING_FUNCTIONS];
 #endif
     int i, near = 0, first = 0, up = 0, behind, next;
     PL(bounds)(p->which, x, off);
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         const double *const within = PL(within)[p->region][i];
-        const double from = PL(expression)(i, x), to = PL(expression)(i, end);
+        const double from = PL(switching_function)(i, x), to = PL(switching_function)(i, end);
         const int above = to > within[1];
         double about;
         behind = i == p->passed ? p->behind : -1;
@@ -267,7 +268,7 @@ static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SI
             continue;
         }
         about = PL(guess)(p->which, i, above ? 1.0 : -1.0, within[above], behind == above, x, end, p->length);
-#if PL_EXPRESSIONS > 1
+#if PL_SWITCHING_FUNCTIONS > 1
         unclear[near] = i;
 #endif
         near++;
@@ -289,7 +290,7 @@ static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SI
     if (!PL(meets)(p->region, p->which, first, up, behind, x, y, z, p->length, off[first])) {
         return -1;
     }
-#if PL_EXPRESSIONS > 1
+#if PL_SWITCHING_FUNCTIONS > 1
     for (i = 0; i < near; i++) { /* others that are passed, but later */
         const int other = unclear[i];
         behind = other == p->passed ? p->behind : -1;
@@ -331,7 +332,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
         if (found == -2) {
             return 0;
         }
-        if (found == 0 && part.length == part.rest) {
+        if (found == 0 && part.length == part.left) {
             break;
         }
         if (found == -1) {
@@ -354,7 +355,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
     PL(go)(part.which, part.length, x, end);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
-        s->rest[PL_PLACE(i)] = x[PL_SIZE + i];
+        s->low[PL_PLACE(i)] = x[PL_SIZE + i];
     }
 #else
     for (i = 0; i < PL_STATES; i++) {

@@ -7,11 +7,11 @@
 #define pl_event_split pl_event_splitf
 #define pl_event_split_begin pl_event_splitf_begin
 #define pl_event_split_flow pl_event_splitf_flow
-#define pl_divided pl_dividedf
-#define pl_divided_left pl_dividedf_left
-#define pl_divided_next pl_dividedf_next
-#define pl_divided_place pl_dividedf_place
-#define pl_divided_rises pl_dividedf_rises
+#define pl_series_switching pl_series_switchingf
+#define pl_series_switching_left pl_series_switchingf_left
+#define pl_series_switching_next pl_series_switchingf_next
+#define pl_series_switching_place pl_series_switchingf_place
+#define pl_series_switching_rises pl_series_switchingf_rises
 #define pl_entry pl_entryf
 #define pl_equations pl_equationsf
 #define pl_equations_at pl_equationsf_at

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* held.h: tunable params of an instance that expressions read.  Included by the file of the model, which
+/* held.h: tunable params of an instance that switching functions read.  Included by the file of the model, which
  * defines before it
  *
  *     PL_TYPE                    the model, with member coeffs, with leads lead, with modes k, y, which, eta and rate

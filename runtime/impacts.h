@@ -66,7 +66,7 @@ static const real *breakpoints_of(const pl_guards *m, int expression)
     return at;
 }
 
-/* Whether an interval is a breakpoint that stands twice, in which an expression is held */
+/* Whether an interval is a breakpoint that stands twice, in which a switching function is held */
 static int is_hold(const pl_guards *m, int expression, int interval)
 {
     const real *b = breakpoints_of(m, expression) + interval;
@@ -135,8 +135,8 @@ static int has_listed(const pl_guards *m, instant *at, int loses, real time, int
     return 1;
 }
 
-/* An expression that has left its interval other than by an event: by an input, a load or a jump.  Past a bounce a jump
- * alone leads: what rounding has taken beyond one is still before it. */
+/* A switching function that has left its interval other than by an event: by an input, a load or a jump.  Past a bounce
+ * a jump alone leads: what rounding has taken beyond one is still before it. */
 static void follow(const pl_guards *m, instant *at, int jumped)
 {
     walk w;
@@ -168,7 +168,7 @@ static int rest_of(const pl_guards *m, int k)
     return m->impact[k].rest;
 }
 
-/* How far the expression of impact k is off its guard */
+/* How far the switching function of impact k is off its guard */
 static PL_APART real off_guard(const pl_guards *m, const instant *at, int k, real *noise)
 {
     const pl_impact *p = &m->impact[k];
@@ -263,8 +263,8 @@ static int impact_of(const pl_guards *m, int expression, int interval)
     return k;
 }
 
-/* Whether an expression is on a breakpoint that stands twice, and does not fly off; a contact that does: there was no
- * room for its impact */
+/* Whether a switching function is on a breakpoint that stands twice, and does not fly off; a contact that does: there
+ * was no room for its impact */
 static int is_there(const pl_guards *m, const instant *at, const walk *w, int breakpoint, int impact)
 {
     real noise;

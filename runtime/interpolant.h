@@ -29,7 +29,7 @@ static void PL(inside)(const PL_TYPE *s, real ahead, real y[PL_STATES])
     int i;
     if (ahead == s->size) {
         for (i = 0; i < PL_STATES; i++) {
-            y[i] = s->start[i] + (s->gain[i] + s->rest[i]);
+            y[i] = s->start[i] + (s->gain[i] + s->low[i]);
         }
         return;
     }
@@ -43,7 +43,7 @@ static void PL(inside)(const PL_TYPE *s, real ahead, real y[PL_STATES])
     PL(within)(s->poly, ahead * s->per, gain);
 #endif
     for (i = 0; i < PL_STATES; i++) {
-        y[i] = s->start[i] + (gain[i] + s->rest[i]);
+        y[i] = s->start[i] + (gain[i] + s->low[i]);
     }
 }
 
@@ -110,7 +110,7 @@ static real PL(finish)(const real y[PL_STATES], real dt, const real unit[PL_STAT
     return PL(ends)(y, gain) ? most / (real)((uint32_t)1 << (2 * PL_STAGES - 1)) : (real)1e35;
 }
 
-#if PL_ARGUMENTS > 0 || PL_EXPRESSIONS > 0
+#if PL_ARGUMENTS > 0 || PL_SWITCHING_FUNCTIONS > 0
 /* Polynomials in powers of theta that are constant so far: c[0] is theirs to fill */
 static void PL(no_slopes)(int degree, int columns, real c[])
 {

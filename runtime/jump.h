@@ -2,7 +2,7 @@
 /* jump.h: NAME_jump, many steps at once, by powers of the transfer matrix in double-double, split where loads change
  * their formula.  Included by the file of the model, which defines before it
  *
- *     PL_TYPE                    the model, with members y, with segments segment, with low words rest or carry
+ *     PL_TYPE                    the model, with members y, with segments segment, with low parts low or carry
  *     PL_STATES, PL_LOAD_STATES  the states; the load states that a step reads
  *     PL_SIZE                    these and the states, of several blocks those of the largest
  *     PL_SEGMENTS                of time, in which loads have their formulas
@@ -10,7 +10,7 @@
  *                                PL(block_state)[] from PL(block_first)[block] on; 1: the model is one
  * PL_CONVERTED               1: what is kept are not the states: PL(kept_state)(s, y) and PL(keep_state)(s, y);
  *                                not of several blocks
- *     PL_COMPENSATED                    1: of each state what rounding took is in s->rest
+ *     PL_COMPENSATED                    1: of each state what rounding took is in s->low
  *     PL_CARRIES                 of so many, PL(carried)[], it is in s->carry
  *     PL_PHI                     the name of the transfer matrix; PL(Phi_low) has its second words
  *     PL_ENTRIES                 of the load states beside it: PL(power_entry)[], {segment, row, column, value}
@@ -111,7 +111,7 @@ static void PL(leap_from)(const PL_TYPE *s, int block, pl_two x[PL_SIZE])
     for (i = 0; i < states; i++) {
         x[i].hi = y[PL(state_of)(block, i)];
 #if PL_COMPENSATED
-        x[i].lo = s->rest[PL(state_of)(block, i)];
+        x[i].lo = s->low[PL(state_of)(block, i)];
 #else
         x[i].lo = 0;
 #endif
@@ -142,7 +142,7 @@ static void PL(leap_to)(PL_TYPE *s, int block, const pl_two x[PL_SIZE])
     for (i = 0; i < states; i++) {
         s->y[PL(state_of)(block, i)] = x[i].hi;
 #if PL_COMPENSATED
-        s->rest[PL(state_of)(block, i)] = x[i].lo;
+        s->low[PL(state_of)(block, i)] = x[i].lo;
 #endif
     }
 #endif

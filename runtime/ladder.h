@@ -33,17 +33,17 @@ static real length_of(const pl_ladder *l, const int *halvings, int matrix, int r
     return h / (real)((uint32_t)1 << (down > 0 ? down : 0));
 }
 
-static void clear_rest(int n, real *rest)
+static void clear_low(int n, real *x_low)
 {
     int i;
     for (i = 0; i < n; i++) {
-        rest[i] = 0;
+        x_low[i] = 0;
     }
 }
 
 /* The length of the piece to be tried, at most `left` unless it is the shortest */
 static inline real stand(climb *at, const pl_ladder *l, const int *halvings, int matrix, real h, real left, int n,
-                         real *rest)
+                         real *x_low)
 {
     real length;
     if (halvings[matrix] == 0) {
@@ -51,7 +51,7 @@ static inline real stand(climb *at, const pl_ladder *l, const int *halvings, int
         return h;
     }
     if (!at->rested) {
-        clear_rest(n, rest);
+        clear_low(n, x_low);
         at->rested = 1;
     }
     at->rungs = (halvings[matrix] - 1) / l->spacing[matrix] + 1;
@@ -64,29 +64,29 @@ static inline real stand(climb *at, const pl_ladder *l, const int *halvings, int
     return length;
 }
 
-/* y: x a piece on.  rest: 2 n */
+/* y: x a piece on.  x_low: 2 n */
 static inline void take_piece(int n, const climb *at, const pl_ladder *l, const real *Phi, int matrix, const real *x,
-                              real *y, real *rest)
+                              real *y, real *x_low)
 {
     int i;
     if (at->rung < at->rungs) {
-        rung_piece(n, l->pieces, l->first[matrix] + at->rung, x, y, rest);
+        rung_piece(n, l->pieces, l->first[matrix] + at->rung, x, y, x_low);
         return;
     }
-    whole_piece(n, Phi, matrix, x, y);
+    full_piece(n, Phi, matrix, x, y);
     for (i = 0; i < n && at->rungs > 0; i++) {
-        rest[n + i] = 0;
+        x_low[n + i] = 0;
     }
 }
 
-static inline void keep_piece(int n, const climb *at, const real *y, real *x, real *rest)
+static inline void keep_piece(int n, const climb *at, const real *y, real *x, real *x_low)
 {
     int i;
     for (i = 0; i < WORDS * n; i++) {
         x[i] = y[i];
     }
     for (i = 0; i < n && at->rungs > 0; i++) {
-        rest[i] = rest[n + i];
+        x_low[i] = x_low[n + i];
     }
 }
 

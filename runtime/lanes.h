@@ -144,11 +144,11 @@ PL_LANES_INLINE real pl_larger_size(real most, real value)
 }
 
 /* As pl_accumulate, in every lane */
-PL_LANES_INLINE pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lanes small, pl_lanes *rest)
+PL_LANES_INLINE pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lanes small, pl_lanes *low)
 {
     const pl_lanes whole = sum + term, part = whole - sum;
-    const pl_lanes error = ((sum - (whole - part)) + (term - part)) + (small + *rest), result = whole + error;
-    *rest = error - (result - whole);
+    const pl_lanes error = ((sum - (whole - part)) + (term - part)) + (small + *low), result = whole + error;
+    *low = error - (result - whole);
     return result;
 }
 #undef PL_LANES_BITS

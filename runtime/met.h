@@ -17,9 +17,9 @@ static void PL(watch)(PL(piece) *p, real y[PL_STATES])
 {
     int i;
     for (i = 0; i < PL_STATES; i++) {
-        p->rest[i] = 0;
+        p->low[i] = 0;
     }
-    PL(open)(&p->at, p->contact, y, p->rest, p->law[0], p->terms, p->work);
+    PL(open)(&p->at, p->contact, y, p->low, p->law[0], p->terms, p->work);
     p->at.expand = PL(again);
     p->at.from = p;
 }
@@ -81,8 +81,8 @@ static int PL(put_back)(const PL(contact) *contact, const real d[2][PL_TERMS], r
         const pl_hold *const h = &PL(along).hold[i];
         const real *const back = PL(along).back + (ptrdiff_t)i * PL_STATES;
         const real *const place = PL(along).place_back + (ptrdiff_t)(h->impact < 0 ? 0 : h->impact) * PL_STATES;
-        const real speed = d[0][PL_EXPRESSIONS + h->velocity];
-        const real off = h->impact < 0 ? 0 : d[0][PL_EXPRESSIONS + PL(along).impact[h->impact].place];
+        const real speed = d[0][PL_SWITCHING_FUNCTIONS + h->velocity];
+        const real off = h->impact < 0 ? 0 : d[0][PL_SWITCHING_FUNCTIONS + PL(along).impact[h->impact].place];
         if (contact->interval[h->expression] == h->interval) {
             any = 1;
             for (k = 0; k < PL_STATES; k++) {

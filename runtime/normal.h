@@ -14,27 +14,28 @@
  *     PL_STAGES                  nodes of a step by collocation, beside its start
  *     PL_SWEEPS, PL_FIRST_SWEEPS from forces of the step before; where it begins anew
  *     PL_FUNCTIONS               of time, that forces read
- *     PL_WAVES                   values of known loads
+ *     PL_FORCINGS                   values of known loads
  * PL_OPERATORS                   operators; of several PL_SELECTOR is the function of time that says which one serves
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_STEADY, PL_STEADY_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
- * PL_IN_MODES                1: part of event_split.h, whose step is PL(whole), by collocation: s->y is the state, and
+ * PL_IN_MODES                1: part of event_split.h, whose step is PL(full_step), by collocation: s->y is the state,
+ * and
  *                                functions of time are the time of the node alone
  *     PL_PEAKS                   above 0: peaks.h has PL(step), and its PL(one_step) is here
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
- *     PL(waves)(s, wave)                 values of known loads now
+ *     PL(forcings)(s, forcing)                 values of known loads now
  * PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in event_split.h PL(on_modes)(which, left, force):
  * those
  *                                of the remainder
  *     PL(modes_of)(which, q, mode), PL(of_modes)(which, mode, q)   modes of coordinates, and back
- *     PL(node_modes)(s, which, node, force, wave, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
+ *     PL(node_modes)(s, which, node, force, forcing, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
  *     PL(forces_ahead)(s, force)         of collocation: those at the nodes that go on from the step before
- *     PL(predict)(s, which, wave, eta, rate, expected)   of points: modes after the step, and the forces there
+ *     PL(predict)(s, which, forcing, eta, rate, expected)   of points: modes after the step, and the forces there
  *     PL(correct)[][2][PL_WIDTH]         what a force adds by its excess over that, of all operators or of one
  * PL(bound)[], PL(next)[][][]        of a schedule: value up to which each operator serves; modes of the next from its
- *     PL(still)(x, wave, sum)            once steady: [omega eta, eta'] after a step from those before
+ *     PL(still)(x, forcing, sum)            once steady: [omega eta, eta'] after a step from those before
  *     PL(omega)[2][PL_WIDTH]             omega, 1 over it
  *     PL(until), PL(change)              of segments: time to each change, and the changes
  *     PL(pass_time)(s, u)                phases and time of a step */
@@ -64,13 +65,13 @@ static inline void PL(functions_at)(const PL_TYPE *s, int node, int ended, real 
 #endif
 }
 
-static inline void PL(waves_now)(const PL_TYPE *s, real wave[])
+static inline void PL(forcings_now)(const PL_TYPE *s, real forcing[])
 {
-#if PL_WAVES > 0
-    PL(waves)(s, wave);
+#if PL_FORCINGS > 0
+    PL(forcings)(s, forcing);
 #else
     (void)s;
-    wave[0] = 0;
+    forcing[0] = 0;
 #endif
 }
 
@@ -199,10 +200,10 @@ static void PL(collocate)(PL_TYPE *s)
 {
     real force[PL_NODES][PL_WIDTH];
 #endif
-    real f[PL_NODES][PL_FUNCTIONS + 1], eta[PL_NODES][PL_WIDTH], rate[PL_NODES][PL_WIDTH], wave[PL_WAVES + 1];
+    real f[PL_NODES][PL_FUNCTIONS + 1], eta[PL_NODES][PL_WIDTH], rate[PL_NODES][PL_WIDTH], forcing[PL_FORCINGS + 1];
     const int which = PL_SERVING;
     int i, k, sweep, sweeps;
-    PL(waves_now)(s, wave);
+    PL(forcings_now)(s, forcing);
     for (k = 0; k < PL_NODES; k++) {
         PL(functions_at)(s, k, 0, f[k]);
     }
@@ -219,7 +220,7 @@ static void PL(collocate)(PL_TYPE *s)
 #endif
     for (sweep = 0; sweep < sweeps; sweep++) {
         for (k = 1; k < PL_NODES; k++) {
-            PL(node_modes)(s, which, k, force, wave, eta[k], rate[k]);
+            PL(node_modes)(s, which, k, force, forcing, eta[k], rate[k]);
             PL(mode_forces)(s, which, f[k], eta[k], rate[k], force[k]);
         }
     }
@@ -250,11 +251,12 @@ static void PL(collocate)(PL_TYPE *s)
 /* Predict, evaluate, correct; PL_TWICE: evaluate, `first` being the forces of the first time */
 static void PL(advance)(PL_TYPE *s, real first[PL_WIDTH])
 {
-    real eta[PL_WIDTH], rate[PL_WIDTH], force[PL_WIDTH], expected[PL_WIDTH], f[PL_FUNCTIONS + 1], wave[PL_WAVES + 1];
+    real eta[PL_WIDTH], rate[PL_WIDTH], force[PL_WIDTH], expected[PL_WIDTH], f[PL_FUNCTIONS + 1],
+        forcing[PL_FORCINGS + 1];
     const int which = PL_SERVING;
     int i;
-    PL(waves_now)(s, wave);
-    PL(predict)(s, which, wave, eta, rate, expected);
+    PL(forcings_now)(s, forcing);
+    PL(predict)(s, which, forcing, eta, rate, expected);
     PL(pass_time)(s, NULL);
     PL(functions_at)(s, 0, 1, f);
     PL(mode_forces)(s, which, f, eta, rate, force);
@@ -281,9 +283,9 @@ static void PL(advance)(PL_TYPE *s, real first[PL_WIDTH])
 /* The step is exact. */
 static void PL(settled_step)(PL_TYPE *s)
 {
-    real x[2 * PL_WIDTH], sum[2 * PL_WIDTH], wave[PL_WAVES + 1];
+    real x[2 * PL_WIDTH], sum[2 * PL_WIDTH], forcing[PL_FORCINGS + 1];
     int i;
-    PL(waves_now)(s, wave);
+    PL(forcings_now)(s, forcing);
 #if PL_OPERATORS > 1
     if (s->which != PL_STEADY_IN) {
         PL(serve)(s, PL_STEADY_IN);
@@ -293,7 +295,7 @@ static void PL(settled_step)(PL_TYPE *s)
         x[i] = PL(omega)[0][i] * s->eta[i];
         x[PL_WIDTH + i] = s->rate[i];
     }
-    PL(still)(x, wave, sum);
+    PL(still)(x, forcing, sum);
     for (i = 0; i < PL_WIDTH; i++) {
         s->eta[i] = PL(omega)[1][i] * sum[i];
         s->rate[i] = sum[PL_WIDTH + i];
@@ -314,7 +316,7 @@ static void PL(take_modes)(PL_TYPE *s)
 }
 
 /* The step, of which event_split.h asks whether it stands */
-static inline void PL(whole)(PL_TYPE *s)
+static inline void PL(full_step)(PL_TYPE *s)
 {
     PL(collocate)(s);
     PL(of_modes)(0, s->eta, s->y);

@@ -44,8 +44,8 @@
 #ifndef PL_DERIVED
 #define PL_DERIVED 0
 #endif
-#ifndef PL_EXPRESSIONS
-#define PL_EXPRESSIONS 0
+#ifndef PL_SWITCHING_FUNCTIONS
+#define PL_SWITCHING_FUNCTIONS 0
 #endif
 #ifndef PL_FEW
 #define PL_FEW 0

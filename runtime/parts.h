@@ -5,10 +5,10 @@
  * Included by the file of the model, which defines before it
  *
  *     PL(name), PL_TYPE     the model, with members contact[PL_PARTS] and crossing[PL_PARTS][]
- *     PL_PARTS              those that have expressions
+ *     PL_PARTS              those that have switching functions
  *     PL_MAX_EVENTS         crossings of all of them in a step
  *     PL(shares)[part]      what each region of a part adds to the number of the model's
- *     PL(numbers)[part]     of its expressions among the model's */
+ *     PL(numbers)[part]     of its switching functions among the model's */
 #include "numbers.h"
 
 int PL(region)(const PL_TYPE *s)

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* passage.h: formulas that the state chooses beside a collocation, part of radau.h: a step is solved with those of its
- * start.  Each expression is a polynomial through its values at the start and the nodes; at its first root behind a
- * breakpoint the step ends, and is made anew with that length, since its end is more exact than its inside.  The
- * model's file defines beside what radau.h asks
+ * start.  Each switching function is a polynomial through its values at the start and the nodes; at its first root
+ * behind a breakpoint the step ends, and is made anew with that length, since its end is more exact than its inside.
+ * The model's file defines beside what radau.h asks
  *
- *     PL(watch)(known, interval, y, value, terms)   the expressions at y; the sizes of what they are summed from
- *     PL(breaks), PL(breakpoint), PL(passing)       of each expression how many breakpoints, these, a pl_divided
+ * PL(watch)(known, interval, y, value, terms)   the switching functions at y; the sizes of what they are summed from
+ * PL(breaks), PL(breakpoint), PL(passing)       of each switching function how many breakpoints, these, a
+ * pl_series_switching
  *
  * and a member contact.  Where there are impacts, contacts at rest and friction, what these are watched by stands
- * behind the expressions, PL_TERMS in all, the first PL_WAYS by polynomials, and is looked for like them; what happens
- * at an event is the law of events.c, by the first terms of a series there.  The file defines
+ * behind the switching functions, PL_TERMS in all, the first PL_WAYS by polynomials, and is looked for like them; what
+ * happens at an event is the law of events.c, by the first terms of a series there.  The file defines
  *
  *     PL(expand_from)            as taylor.h, of order PL_EVENT_ORDER with PL_EVENT_COLUMNS columns
  *     PL(events), PL(along)      a pl_events of that series; of polynomials along a step
@@ -17,7 +18,7 @@
  * and members chain and rested of contact.  placed is 1; 2 where what holds may have changed, 3 where that has just
  * been looked at. */
 
-/* ---- the expressions where the internal step starts, and along it ---- */
+/* ---- the switching functions where the internal step starts, and along it ---- */
 
 /* Where it starts: c[0]; all further coefficients are 0 */
 static void PL(values_here)(const PL_TYPE *s, const real start[], const real slope[],
@@ -53,19 +54,19 @@ static void PL(values_along)(const PL_TYPE *s, const real start[], const real sl
 
 #if PL_ORDER == 0 && !PL_CONTACTS
 /* The intervals of a state that was set, by values; the first step then says where that goes which is on a breakpoint.
- * The interval of one expression may choose what another is. */
+ * The interval of one switching function may choose what another is. */
 static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 {
     real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS];
     int i, again = PL_CHANGES;
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         s->contact.interval[i] = 0;
     }
     s->contact.last.expression = -1;
     s->contact.placed = -PL_CHANGES;
     do {
         PL(values_here)(s, start, slope, c, terms);
-    } while (pl_divided_place(&PL(passing), c[0], terms, s->contact.interval) && again-- > 0);
+    } while (pl_series_switching_place(&PL(passing), c[0], terms, s->contact.interval) && again-- > 0);
 }
 #endif
 
@@ -74,7 +75,7 @@ static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 typedef struct PL(meeting) { /* where the next internal step starts */
     PL_TYPE *s;
     const real *start, *slope;
-    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_EVENT_ORDER)];
+    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_EVENT_ORDER)];
     pl_instant at;
 } PL(meeting);
 
@@ -90,7 +91,7 @@ static void PL(look_here)(PL(meeting) *m, PL_TYPE *s, const real start[], const 
     m->s = s;
     m->start = start;
     m->slope = slope;
-    PL(open)(&m->at, &s->contact, s->start, s->rest, m->c[0], m->terms, m->work);
+    PL(open)(&m->at, &s->contact, s->start, s->low, m->c[0], m->terms, m->work);
     m->at.expand = PL(again);
     m->at.from = m;
     m->at.time = PL(since)(s) * PL_H;
@@ -151,12 +152,12 @@ static int PL(pass_here)(PL_TYPE *s, const real start[], const real slope[])
     return PL(cross)(&s->contact, PL(since)(s) * PL_H);
 }
 
-/* Whether an expression has left its interval where the next internal step starts: by a jump */
+/* Whether a switching function has left its interval where the next internal step starts: by a jump */
 static int PL(left)(PL_TYPE *s, const real start[], const real slope[])
 {
     real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS];
     PL(values_here)(s, start, slope, c, terms);
-    return pl_divided_left(&PL(passing), c[0], terms, s->contact.interval, &s->contact.last);
+    return pl_series_switching_left(&PL(passing), c[0], terms, s->contact.interval, &s->contact.last);
 }
 
 #endif
@@ -164,7 +165,7 @@ static int PL(left)(PL_TYPE *s, const real start[], const real slope[])
 /* ---- the first crossing in a step ---- */
 
 typedef struct PL(search) { /* of a step */
-    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS], work[PL_DIVIDED_WORK(PL_WAY)];
+    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_WAY)];
     pl_crossing found;
     int splits, exact; /* the guard of a bounce that has just left it: its way is known better than its place */
 #if PL_CONTACTS
@@ -187,7 +188,7 @@ static void PL(look_along)(PL(search) *f, PL_TYPE *s)
     f->splits = PL_MAX_SPLITS;
     f->along = PL(along);
     f->along.h = s->size * PL_H;
-    PL(open)(&f->at, &s->contact, s->start, s->rest, f->c[0], f->terms, f->work);
+    PL(open)(&f->at, &s->contact, s->start, s->low, f->c[0], f->terms, f->work);
     f->at.chain = s->contact.chain;
 }
 
@@ -217,10 +218,10 @@ static real PL(largest_place)(const PL_TYPE *s)
  * what went wrong; PL_NO_MOVE: it is here */
 static int PL(end_at_crossing)(PL_TYPE *s, real terms[], real *length)
 {
-    real work[PL_DIVIDED_WORK(PL_ORDER)], next;
+    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)], next;
     int splits = PL_MAX_SPLITS;
     pl_instant at;
-    PL(open)(&at, &s->contact, s->start, s->rest, s->poly[0], terms, work);
+    PL(open)(&at, &s->contact, s->start, s->low, s->poly[0], terms, work);
     at.chain = s->contact.chain;
     if (s->contact.placed < 3 && pl_events_left(&PL(events), &at)) {
         return PL(not_yet)(s, 2);
@@ -259,7 +260,7 @@ static int PL(column_found)(const PL(search) *f, real *b)
 {
     const pl_hold *const h = &PL(along).hold[f->at.freed < 0 ? 0 : f->at.freed];
     *b = f->at.freed < 0 ? PL(breakpoint_of)(&f->found) : 0;
-    return f->at.freed < 0 ? f->found.expression : PL_EXPRESSIONS + (f->found.upward ? h->up : h->down);
+    return f->at.freed < 0 ? f->found.expression : PL_SWITCHING_FUNCTIONS + (f->found.upward ? h->up : h->down);
 }
 
 #else
@@ -273,7 +274,8 @@ static void PL(look_along)(PL(search) *f, PL_TYPE *s)
 
 static real PL(find_first)(PL(search) *f, const PL_TYPE *s, const real *end)
 {
-    return pl_divided_next(&PL(passing), f->c[0], f->terms, s->contact.interval, *end, &f->splits, &f->found, f->work);
+    return pl_series_switching_next(&PL(passing), f->c[0], f->terms, s->contact.interval, *end, &f->splits, &f->found,
+                                    f->work);
 }
 
 static int PL(column_found)(const PL(search) *f, real *b)
@@ -285,8 +287,8 @@ static int PL(column_found)(const PL(search) *f, real *b)
 #endif
 
 /* Moves the end of the step to theta, near 1, and from there to where what is found passes its breakpoint; f->c: the
- * expressions along the step.  The coefficients of a polynomial of many stages have more rounding than its
- * values at the nodes: what is on its breakpoint is the expression itself, at the state there. */
+ * switching functions along the step.  The coefficients of a polynomial of many stages have more rounding than its
+ * values at the nodes: what is on its breakpoint is the switching function itself, at the state there. */
 static void PL(move_end)(PL_TYPE *s, const real start[], const real slope[],
                          const real poly[PL_STAGES + 1][PL_COLUMNS], const PL(search) *f, real theta)
 {
@@ -343,7 +345,7 @@ static int PL(pass)(PL_TYPE *s, const real start[], const real slope[], const re
         s->contact.placed = 3;
 #elif PL_ORDER == 0
         if (s->contact.placed < 0) {
-            if (pl_divided_rises(&PL(passing), f.c[0], f.terms, s->contact.interval)) {
+            if (pl_series_switching_rises(&PL(passing), f.c[0], f.terms, s->contact.interval)) {
                 s->contact.placed++;
                 s->size = 0;
                 return PL_NO_MOVE;

@@ -13,7 +13,7 @@
 
 /* Moves x on over a piece of length dt, or to the first event in it; splits < 0: without looking for one.  y: x at the
  * end of a whole piece, NULL for others.  What overflows is not looked at, and x is then not finite. */
-static event move(const searched *m, instant *at, const climb *up, real dt, const real *y, int *splits, real *rest,
+static event move(const searched *m, instant *at, const climb *up, real dt, const real *y, int *splits, real *x_low,
                   real *work)
 {
     const int n = m->size;
@@ -32,9 +32,9 @@ static event move(const searched *m, instant *at, const climb *up, real dt, cons
         first = no_event;
     }
     if (y && !first.any) {
-        keep_piece(n, up, y, at->x, rest);
+        keep_piece(n, up, y, at->x, x_low);
     } else {
-        part_of_piece(n, m->degree, coefficients, low, first.s, at->x, up->rungs > 0 ? rest : (real *)0);
+        part_of_piece(n, m->degree, coefficients, low, first.s, at->x, up->rungs > 0 ? x_low : (real *)0);
     }
     return first;
 }
@@ -43,21 +43,21 @@ static event move(const searched *m, instant *at, const climb *up, real dt, cons
 static int go(const searched *m, instant *at, real tau, int fresh)
 {
     const int n = m->size;
-    real left = tau, *y = at->work, *bend = y + WORDS * n, *rest = bend + n, *work = rest + 2 * n;
+    real left = tau, *y = at->work, *bend = y + WORDS * n, *x_low = bend + n, *work = x_low + 2 * n;
     int splits = m->max_splits, clear = 1;
     climb up = at_top;
     at->work = work;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
-        const real longest = stand(&up, &m->ladder, m->halvings, at->c->matrix, m->h, left, n, rest);
+        const real longest = stand(&up, &m->ladder, m->halvings, at->c->matrix, m->h, left, n, x_low);
         int whole = left > longest * (1 - REST), how;
         const real dt = limited(m, at, whole ? longest : left);
         event first;
         whole = whole && dt >= longest;
         if (whole) {
-            take_piece(n, &up, &m->ladder, m->Phi, at->c->matrix, at->x, y, rest);
+            take_piece(n, &up, &m->ladder, m->Phi, at->c->matrix, at->x, y, x_low);
             hold(m, at, y, work);
             if (is_event_free(m, at, &up, y, bend, work)) {
-                keep_piece(n, &up, y, at->x, rest);
+                keep_piece(n, &up, y, at->x, x_low);
                 left -= dt;
                 fresh = 0;
                 rise(&up);
@@ -74,7 +74,7 @@ static int go(const searched *m, instant *at, real tau, int fresh)
             up.bent = 0;
             continue;
         }
-        first = move(m, at, &up, dt, whole ? y : (real *)0, &splits, rest, work);
+        first = move(m, at, &up, dt, whole ? y : (real *)0, &splits, x_low, work);
         hold(m, at, at->x, work);
         up.bent = 0;
         if (splits < 0 || is_lost(&up, n, at->x)) {

@@ -38,14 +38,14 @@ void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t 
 
 /* ---- compensated sums, for --accuracy compensated -------------------------------------------------------------- */
 
-/* Returns sum + term + (small + *rest), rounded; *rest, the low part of the sum, becomes the error of that rounding.
- * The error of the first sum is exact (Knuth's TwoSum: no condition on sizes); `small` and *rest, which are as small as
+/* Returns sum + term + (small + *low), rounded; *low, the low part of the sum, becomes the error of that rounding.
+ * The error of the first sum is exact (Knuth's TwoSum: no condition on sizes); `small` and *low, which are as small as
  * rounding errors, are added to it, since they would be lost in `term`. */
-static inline PL_REAL pl_accumulate(PL_REAL sum, PL_REAL term, PL_REAL small, PL_REAL *rest)
+static inline PL_REAL pl_accumulate(PL_REAL sum, PL_REAL term, PL_REAL small, PL_REAL *low)
 {
     const PL_REAL whole = sum + term, part = whole - sum;
-    const PL_REAL error = ((sum - (whole - part)) + (term - part)) + (small + *rest), result = whole + error;
-    *rest = error - (result - whole);
+    const PL_REAL error = ((sum - (whole - part)) + (term - part)) + (small + *low), result = whole + error;
+    *low = error - (result - whole);
     return result;
 }
 
@@ -205,38 +205,39 @@ void pl_switching_compensated_move(const pl_switching *m, int matrix, int degree
  * the coefficients c, (degree + 1) x columns, in powers of time.  Between two crossings the formulas are those of the
  * intervals, for which c is computed.  terms: of each function the sum of sizes of the terms of its value at the start,
  * which bounds its rounding error; as above, smaller excursions past a breakpoint are ignored. */
-typedef struct pl_divided {
+typedef struct pl_series_switching {
     int expressions, columns, degree;
     const int *column;  /* of each switching function */
     const int *breaks;  /* of each the number of breakpoints, >= 1 */
     const PL_REAL *at;  /* the breakpoints: those of function 0, rising; of function 1; ... */
-} pl_divided;
+} pl_series_switching;
 
 /* Sets the interval of each switching function at the start; exactly on a breakpoint the first derivative that is not 0
  * decides, or if there is none it is the lower interval.  Returns 1 if an interval changed, so that c is to be computed
  * again, else 0. */
-int pl_divided_place(const pl_divided *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
+int pl_series_switching_place(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
 
 /* A function that starts on the breakpoint above its interval, and by c, whose unit of time is the step, soon exceeds
  * it by more than rounding, is assigned to the interval above.  Returns 1 if there is one, else 0. */
-int pl_divided_rises(const pl_divided *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
+int pl_series_switching_rises(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
 
 /* Returns 1 if a switching function is outside its interval by more than rounding, else 0; *crossing receives which,
  * and the breakpoint.  On entry *crossing is the last crossing, whose breakpoint the function may still be on;
  * expression -1: none. */
-int pl_divided_left(const pl_divided *m, const PL_REAL *c, const PL_REAL *terms, const int *interval,
+int pl_series_switching_left(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, const int *interval,
                     pl_crossing *crossing);
 
 /* Returns the time, at most `end`, in the unit of time of c, when a switching function first leaves its interval, or -1
  * if none does.  The search steps over no root of a polynomial; *splits < 0 afterwards: it needed too many halvings. */
-PL_REAL pl_divided_next(const pl_divided *m, const PL_REAL *c, const PL_REAL *terms, const int *interval, PL_REAL end,
+PL_REAL pl_series_switching_next(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms,
+                                 const int *interval, PL_REAL end,
                         int *splits, pl_crossing *crossing, PL_REAL *work);
 
 /* ---- events.c: impacts, contacts at rest and dry friction in models with a Taylor series ----------------------- */
 
-/* As pl_divided, but a switching function may have the same breakpoint twice, and is held in the interval between, by
- * friction that sticks or by a contact at rest.  Watches are further columns of c, with entries of terms behind those
- * of the switching functions: velocities, conditions of release, states after a jump.
+/* As pl_series_switching, but a switching function may have the same breakpoint twice, and is held in the interval
+ * between, by friction that sticks or by a contact at rest.  Watches are further columns of c, with entries of terms
+ * behind those of the switching functions: velocities, conditions of release, states after a jump.
  *
  * An impact occurs where a switching function passes a breakpoint.  One with a constraint is a bounce: it changes the
  * approach speed s to -restitution s. */
@@ -250,7 +251,7 @@ typedef struct pl_event_impact {
 } pl_event_impact;
 
 typedef struct pl_events {
-    const pl_divided *divided;
+    const pl_series_switching *switching;
     int states;
     const int *watch; /* the column of each watch */
     int holds;        /* number of constraints, at most 32 */
@@ -278,9 +279,9 @@ typedef struct pl_chain {
 typedef struct pl_instant {
     void (*expand)(const void *from, const int *interval, const PL_REAL *y, PL_REAL *c, PL_REAL *terms);
     const void *from;
-    PL_REAL *y, *rest;  /* the states and their low parts, which are 0 after an assignment */
+    PL_REAL *y, *low;  /* the states and their low parts, which are 0 after an assignment */
     PL_REAL *c, *terms;
-    PL_REAL *work;      /* PL_DIVIDED_WORK entries */
+    PL_REAL *work;      /* PL_SERIES_SWITCHING_WORK entries */
     PL_REAL unit;       /* the unit of time of c, in h */
     int *interval;      /* of each switching function */
     uint64_t *total;    /* number of crossings since the start */
@@ -304,8 +305,8 @@ void pl_events_place(const pl_events *m, pl_instant *at);
  * event was passed; -1 if there were too many; else 0.  Constraints that have drifted by rounding are corrected. */
 int pl_events_begin(const pl_events *m, pl_instant *at);
 
-/* Returns the time, at most `end`, of the first event, as pl_divided_next does.  *size, the length of the series
- * without an event, becomes shorter after a bounce that returns soon. */
+/* Returns the time, at most `end`, of the first event, as pl_series_switching_next does.  *size, the length of the
+ * series without an event, becomes shorter after a bounce that returns soon. */
 PL_REAL pl_events_next(const pl_events *m, pl_instant *at, PL_REAL *size, int *splits);
 
 /* Passes that event; at->y is the state there.  Returns 0 if there were too many, else 1.  Simultaneous events are

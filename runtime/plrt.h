@@ -348,7 +348,7 @@ enum { PL_PEAK_SPACE = 6 };
 #define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size))
 #define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 5 * (size) + 5 * (switches))
 #define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
-#define PL_DIVIDED_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+#define PL_SERIES_SWITCHING_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
 #define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
 #define PL_INCREMENT_WORK(size) (6 * (size) * (size))

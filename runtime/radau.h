@@ -10,7 +10,7 @@
  *     PL_ENTRIES                 of the Jacobian that are not 0
  *     PL_INPUTS, PL_KNOWN        samples; numbers that the equations read beside the state
  *     PL_SEGMENTS                of time, in each of which the loads have a formula: member leg; 1: just one
- *     PL_EXPRESSIONS             that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
+ * PL_SWITCHING_FUNCTIONS             that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
  *                                PL_WATCH_READS: known numbers
  *     PL_CONTACTS                1: impacts, contacts at rest, friction, as passage.h says
  *     PL_CHOICES                 of formulas by t, of a series
@@ -153,7 +153,7 @@ static void PL(place)(PL_TYPE *s)
     s->series = s->stiff = s->bounds = s->run = 0;
     s->patience = 2;
 #endif
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(forget)(&s->contact);
 #endif
 }
@@ -177,7 +177,7 @@ static inline int PL(leg_of)(const PL_TYPE *s)
 
 static inline const int *PL(intervals)(const PL_TYPE *s)
 {
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     return s->contact.interval;
 #else
     (void)s;
@@ -269,7 +269,7 @@ static void PL(commit)(PL_TYPE *s)
         return;
     }
     for (i = 0; i < PL_STATES; i++) {
-        s->start[i] = pl_accumulate(s->start[i], s->gain[i], 0, &s->rest[i]);
+        s->start[i] = pl_accumulate(s->start[i], s->gain[i], 0, &s->low[i]);
     }
     if (s->stop == PL_AT_STEP) {
         s->at = s->at_low = 0;
@@ -310,7 +310,7 @@ static real PL(limit)(PL_TYPE *s)
     return limit;
 }
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 #include "passage.h"
 #endif
 
@@ -435,7 +435,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
         s->series = 0;
         s->run++;
 #endif
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
         wrong = PL(pass)(s, start, slope, jacobian, limit, known, unit, poly);
 #endif
 #if PL_CONTACTS
@@ -466,7 +466,7 @@ static inline int PL(next)(PL_TYPE *s, const real u[], const real start[], const
     if (changed) {
         return changed;
     }
-#elif PL_EXPRESSIONS > 0
+#elif PL_SWITCHING_FUNCTIONS > 0
     if (!s->contact.placed) {
 #if PL_ORDER == 0
         PL(locate)(s, start, slope);
@@ -496,7 +496,7 @@ static inline int PL(next)(PL_TYPE *s, const real u[], const real start[], const
 static int PL(advance)(PL_TYPE *s, const real u[], int *tried)
 {
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     int passes = s->size > 0 && s->stop == PL_AT_CROSSING, wrong;
     PL(inputs_now)(s, u, start, slope);
     PL(commit)(s);
@@ -539,7 +539,7 @@ static int PL(reach)(PL_TYPE *s, const real u[], real end, real y[PL_STATES])
 static int PL(collocated)(PL_TYPE *s, const real u[])
 {
     int wrong;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     s->contact.crossings = 0;
 #endif
 #if PL_CONTACTS

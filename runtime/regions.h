@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* regions.h: regions as intervals of expressions between breakpoints, and a state in one of them, for the runtime's own
- * use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and AMPLITUDE(m, i), the
- * size of what is never above 1 in expression i.  It has no guard, for it is a part of these. */
+/* regions.h: regions as intervals of switching functions between breakpoints, and a state in one of them, for the
+ * runtime's own use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and
+ * AMPLITUDE(m, i), the size of what is never above 1 in switching function i.  It has no guard, for it is a part of
+ * these. */
 #include "compensated.h"
 
 typedef struct instant {
@@ -85,7 +86,7 @@ static int list(int max_events, pl_contact *c, pl_crossing *crossing, real time,
     return 1;
 }
 
-/* e - b of an expression, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
+/* e - b of a switching function, and what rounding may have done to it.  A tangent is a third of a piece's e'. */
 static real excess(const searched *m, const pl_contact *c, int expression, real b, const real *x, real *noise)
 {
     const real *row = m->row + expression * m->size;

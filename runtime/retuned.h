@@ -6,7 +6,8 @@
  *     PL(name), PL_SINGLE, PL_H          the model's prefix before a name; 1: in float; its step [s]
  *     PL_WRAPPED                         1: PL(retune) is the model's own, and calls PL(retune_all)
  *     PL_PARAMS, PL_SIZE, PL_STATES      sizes; of x; states, which x begins with
- *     PL_EXPRESSIONS, PL_BREAKS, PL_SEGMENTS     expressions, breakpoints of all; segments of time of the loads
+ * PL_SWITCHING_FUNCTIONS, PL_BREAKS, PL_SEGMENTS     switching functions, breakpoints of all; segments of time of the
+ * loads
  *     PL_BRANCHES, PL(slope_row)[]       linear systems that regions have; of each its first row of highest derivatives
  *                                        among the numbers, -1: it stays, -2: and so do all rows that it has bounds of
  *     PL(segment)[]                      of each, the segment of time it is of, where there are several
@@ -29,7 +30,7 @@
  *     PL_STAYS, PL(stays)[], PL(stay_param)[]    columns of x stay; which param each is, -1: 1
  *     PL_PAIRS, PL(pair)[]               loads oscillate, the first column of each; the next is its other one
  *     PL_STILL                           1: steps are looked at that stay still
- *     PL(breaks)[]                       breakpoints of each expression
+ *     PL(breaks)[]                       breakpoints of each switching function
  *     PL_LARGE, PL_FOLDED, PL_OPEN_END   what no number may pass; root of 2 less 1; of intervals without end */
 #include "numbers.h"
 
@@ -114,9 +115,9 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
 #endif
     (void)from;
 #if PL_BOUNDED > 0
-    for (i = 0; i < PL_SEGMENTS * PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SEGMENTS * PL_SWITCHING_FUNCTIONS; i++) {
 #if PL_SEGMENTS > 1
-        c->amplitude[i] = PL(amplitude)(c->row[i / PL_EXPRESSIONS][i % PL_EXPRESSIONS]);
+        c->amplitude[i] = PL(amplitude)(c->row[i / PL_SWITCHING_FUNCTIONS][i % PL_SWITCHING_FUNCTIONS]);
 #else
         c->amplitude[i] = PL(amplitude)(c->row[i]);
 #endif
@@ -135,9 +136,9 @@ static void PL(take_all)(PL(coeffs) *c, const pl_two *value)
 {
     const short *from = PL(from);
 #if PL_SEGMENTS > 1
-    from = PL(take)(from, PL_SEGMENTS * PL_EXPRESSIONS, PL_SIZE, value, c->row[0][0]);
+    from = PL(take)(from, PL_SEGMENTS * PL_SWITCHING_FUNCTIONS, PL_SIZE, value, c->row[0][0]);
 #else
-    from = PL(take)(from, PL_EXPRESSIONS, PL_SIZE, value, c->row[0]);
+    from = PL(take)(from, PL_SWITCHING_FUNCTIONS, PL_SIZE, value, c->row[0]);
 #endif
     from = PL(take)(from, PL_BREAKS, 1, value, c->breakpoint);
 #if PL_GUARD_ROWS > 0
@@ -205,9 +206,9 @@ static void PL(bound_guard_rows)(PL(coeffs) *c, int k, real h, real d, real *roo
 static void PL(bound)(PL(coeffs) *c, int k, real h)
 {
     const real d = h / (real)((uint32_t)1 << c->halvings[k]);
-    real room[PL_REACH_WORK(PL_SIZE, PL_EXPRESSIONS)];
+    real room[PL_REACH_WORK(PL_SIZE, PL_SWITCHING_FUNCTIONS)];
 #if PL_GUARD_ROWS > 0 || PL_EVENT_FREE
-    real spare[2][PL_EXPRESSIONS * PL_SIZE];
+    real spare[2][PL_SWITCHING_FUNCTIONS * PL_SIZE];
 #endif
 #if PL_SEGMENTS > 1
     const real *const row = c->row[PL(segment)[k]][0];
@@ -215,23 +216,24 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
     const real *const row = c->row[0];
 #endif
 #if PL_GUARD_ROWS > 0
-    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->tangent[k][0], spare[0], spare[1], room);
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_SWITCHING_FUNCTIONS, row, c->tangent[k][0], spare[0], spare[1],
+                     room);
     PL(bound_guard_rows)(c, k, h, d, room);
 #else
-    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_EXPRESSIONS, row, c->tangent[k][0], c->chord_error[k][0],
+    pl_region_bounds(PL_SIZE, d, c->slopes[k][0], PL_SWITCHING_FUNCTIONS, row, c->tangent[k][0], c->chord_error[k][0],
                      c->cubic_error[k][0],
                      room);
-    pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], PL_EXPRESSIONS, row,
-                    c->bend[PL(first_rung)[k] * PL_EXPRESSIONS], room);
+    pl_region_reach(PL_SIZE, h, c->halvings[k], c->spacing[k], c->slopes[k][0], PL_SWITCHING_FUNCTIONS, row,
+                    c->bend[PL(first_rung)[k] * PL_SWITCHING_FUNCTIONS], room);
 #endif
 #if PL_EVENT_FREE
     if (c->halvings[k] == 1) {
-        pl_region_bounds(PL_SIZE, h, c->slopes[k][0], PL_EXPRESSIONS, row, spare[0], c->chord_off[k][0], spare[1],
-                         room);
+        pl_region_bounds(PL_SIZE, h, c->slopes[k][0], PL_SWITCHING_FUNCTIONS, row, spare[0], c->chord_off[k][0],
+                         spare[1], room);
     }
     if (c->halvings[k] == 0) {
         int i, j;
-        for (i = 0; i < PL_EXPRESSIONS; i++) {
+        for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
             for (j = 0; j < PL_SIZE; j++) {
                 c->chord_off[k][i][j] = c->chord_error[k][i][j];
             }
@@ -250,7 +252,7 @@ static real PL(folded)(real a, real b)
     return a > b ? a + PL_FOLDED * b : b + PL_FOLDED * a;
 }
 
-/* What one system adds to the states, and how far expressions may be off their chords */
+/* What one system adds to the states, and how far switching functions may be off their chords */
 static void PL(gather_branch)(PL(coeffs) *c, int k, const real at[])
 {
     int i, j;
@@ -265,7 +267,7 @@ static void PL(gather_branch)(PL(coeffs) *c, int k, const real at[])
         }
     }
 #endif
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         const real *const off = c->chord_off[k][i];
         real still = 0;
         for (j = 0; j < PL_PAIRS; j++) {
@@ -291,7 +293,7 @@ static void PL(gather)(PL(coeffs) *c)
         PL(gather_branch)(c, i, at);
     }
 #endif
-    for (i = 0; i < PL_EXPRESSIONS; i++) {
+    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         real shift = 0;
         for (j = 0; j < PL_STAYS; j++) {
             shift += c->row[i][PL(stays)[j]] * at[j];

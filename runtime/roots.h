@@ -7,7 +7,7 @@
 #include "real.h"
 
 /* SHORT: a length of s, which goes from 0 to 1 over a piece.  SOON: one in which what starts is under way.  REST: what
- * rounding may leave of a step, in parts of it.  SCALE: that of expressions near the end of the range. */
+ * rounding may leave of a step, in parts of it.  SCALE: that of switching functions near the end of the range. */
 #ifdef REAL_IS_FLOAT
 #define SHORT 0x1p-18f
 #define SOON 0x1p-7f
@@ -109,7 +109,8 @@ static inline void sum_up(int n, int degree, const real *coefficients, real s, r
     }
 }
 
-/* How far an expression is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval */
+/* How far a switching function is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval
+ * */
 typedef struct beyond {
     int degree;
     real *coefficient;

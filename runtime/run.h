@@ -49,7 +49,7 @@ static void PL(rest)(PL_TYPE *s)
     for (i = 0; i < PL_STATES; i++) {
         s->y[i] = 0;
 #if PL_COMPENSATED
-        s->rest[i] = 0;
+        s->low[i] = 0;
 #endif
     }
 #endif

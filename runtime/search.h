@@ -11,7 +11,7 @@
  *     PL_SIZE, PL_STATES         entries of x, of which the first are states; PL_ALL: of the model's
  *     PL_VECTOR, PL_WORK         words of x; numbers that the search works in
  *     PL_H, PL_DEGREE            [s]; of its Taylor polynomials
- *     PL_EXPRESSIONS, PL_IMPACTS that breakpoints divide; impacts
+ *     PL_SWITCHING_FUNCTIONS, PL_IMPACTS that breakpoints divide; impacts
  *     PL_MAX_EVENTS, PL_MAX_SPLITS  in a step
  *     PL_PLACE(i), PL_PART       where state i of the part is in s->y; which of s->contact is its: [1], or nothing
  *     PL_SEARCH, PL_START, PL_ADVANCE, PL_CHANGE  the search: its descriptor, its functions
@@ -34,12 +34,12 @@
 #define PL_OF(name) PL(name)
 #endif
 
-#if PL_EXPRESSIONS == 0 /* what is theirs is not read */
-#define PL_DIVIDED PL(slopes)[0][0], PL(matrix), PL(slopes)[0][0]
+#if PL_SWITCHING_FUNCTIONS == 0 /* what is theirs is not read */
+#define PL_SWITCHING_TABLES PL(slopes)[0][0], PL(matrix), PL(slopes)[0][0]
 #elif PL_SEGMENTS > 1
-#define PL_DIVIDED PL_OF(row)[segment][0], PL(breaks), PL_OF(breakpoint)
+#define PL_SWITCHING_TABLES PL_OF(row)[segment][0], PL(breaks), PL_OF(breakpoint)
 #else
-#define PL_DIVIDED PL_OF(row)[0], PL(breaks), PL_OF(breakpoint)
+#define PL_SWITCHING_TABLES PL_OF(row)[0], PL(breaks), PL_OF(breakpoint)
 #endif
 
 #if PL_SEGMENTS > 1
@@ -53,19 +53,19 @@
 #if PL_GUARDS
 #define PL_GUARD_ERRORS PL_OF(guard_chord_error)[0], PL_OF(guard_cubic_error)[0]
 #define PL_GUARD_TABLES PL_OF(guard_row)[0], PL_OF(guard_tangent)[0], PL_GUARD_ERRORS
-#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_EXPRESSIONS), PL_OF(guard_amplitude)
+#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_OF(guard_amplitude)
 #define PL_ENDED PL_OF(tangent)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GUARD_TABLES, PL_AMPLITUDES
 #define PL_SET PL(sets), PL(held), PL_OF(value)[0]
 #define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(back)[PL_FIRST(PL_IMPACTS)]
 #define PL_BOUNDS PL_ENDED, PL_SET, PL_IMPACTS, PL_OF(impact) + PL_FIRST(PL_IMPACTS), PL_SPEEDS
-#elif PL_EXPRESSIONS > 0
+#elif PL_SWITCHING_FUNCTIONS > 0
 #define PL_BOUNDS PL_OF(tangent)[0][0], PL_OF(chord_error)[0][0], PL_OF(cubic_error)[0][0]
 #else
 #define PL_BOUNDS PL(slopes)[0][0], PL(slopes)[0][0], PL(slopes)[0][0]
 #endif
 
 #define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS
-#define PL_TABLES PL_SIZE, PL_H, PL_EXPRESSIONS, PL_DIVIDED, PL_MATRICES, PL_BOUNDS, PL_MOST
+#define PL_TABLES PL_SIZE, PL_H, PL_SWITCHING_FUNCTIONS, PL_SWITCHING_TABLES, PL_MATRICES, PL_BOUNDS, PL_MOST
 
 #if PL_OWN || PL_SEGMENTS > 1
 /* Made anew for each call: an instance that is copied would have to point into itself. */
@@ -82,7 +82,7 @@ static const PL_SEARCH PL(switching) = {PL_TABLES};
 
 /* ---- regions ---- */
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 /* The region of x in a segment of time */
 static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VECTOR], pl_contact *contact,
                               real work[PL_WORK])
@@ -203,7 +203,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #define PL_SOUGHT void PL(seek)
 #endif
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 /* By the search, from x; its states are those of s */
 static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 {
@@ -217,7 +217,7 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
 #if PL_COMPENSATED
-        s->rest[PL_PLACE(i)] = x[PL_SIZE + i];
+        s->low[PL_PLACE(i)] = x[PL_SIZE + i];
 #endif
     }
     s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);

@@ -25,9 +25,9 @@ enum { MOST = 4 };
 static column watched(const pl_events *m, const pl_instant *at, int watch)
 {
     column w;
-    w.m = m->divided;
+    w.m = m->switching;
     w.first = at->c + m->watch[watch];
-    w.terms = at->terms[m->divided->expressions + watch];
+    w.terms = at->terms[m->switching->expressions + watch];
     return w;
 }
 
@@ -170,7 +170,7 @@ static void take(const pl_instant *at, int states, const real *back, real times)
     for (i = 0; i < states; i++) {
         if (back[i] < 0 || back[i] > 0) {
             at->y[i] -= back[i] * times;
-            at->rest[i] = 0;
+            at->low[i] = 0;
         }
     }
 }
@@ -320,7 +320,7 @@ static void assign(const pl_events *m, pl_instant *at, int first, int count)
     int k;
     for (k = first; k < first + count; k++) {
         at->y[m->state[k]] = value_of(m, at, m->value[k]);
-        at->rest[m->state[k]] = 0;
+        at->low[m->state[k]] = 0;
     }
     renew(m, at);
 }
@@ -343,7 +343,7 @@ static void put_on(const pl_events *m, pl_instant *at, int k)
 
 static void follow(const pl_events *m, pl_instant *at, int jumped)
 {
-    const pl_divided *d = m->divided;
+    const pl_series_switching *d = m->switching;
     const real *b = d->at;
     int i;
     for (i = 0; i < d->expressions; b += d->breaks[i++]) {

@@ -74,7 +74,7 @@ static real PL(length)(const PL_TYPE *s)
         length = PL(shorter)(length, PL(length_of)(last[0], PL_ORDER - 4));
         length = PL(shorter)(length, PL(length_of)(before[0], PL_ORDER - 5));
     }
-    return (PL_EXPRESSIONS > 0 ? (real)0.8 : (real)0.94) * length;
+    return (PL_SWITCHING_FUNCTIONS > 0 ? (real)0.8 : (real)0.94) * length;
 }
 
 /* What stands beside the states in the series has a size too. */
@@ -91,14 +91,15 @@ static inline void PL(measure_beside)(PL_TYPE *s)
 
 #if PL_CONTACTS
 static int PL(end_at_crossing)(PL_TYPE *s, real terms[], real *length);
-#elif PL_EXPRESSIONS > 0
+#elif PL_SWITCHING_FUNCTIONS > 0
 /* Up to the first crossing within `length` h, where there is one: 0, or what went wrong; PL_NO_MOVE: it is here */
-static inline int PL(end_at_crossing)(PL_TYPE *s, const real terms[PL_EXPRESSIONS], real *length)
+static inline int PL(end_at_crossing)(PL_TYPE *s, const real terms[PL_SWITCHING_FUNCTIONS], real *length)
 {
-    real work[PL_DIVIDED_WORK(PL_ORDER)], next;
+    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)], next;
     pl_crossing crossing = s->contact.last;
     int splits = PL_MAX_SPLITS;
-    next = pl_divided_next(&PL(divided), s->poly[0], terms, s->contact.interval, *length, &splits, &crossing, work);
+    next = pl_series_switching_next(&PL(series_switching), s->poly[0], terms, s->contact.interval, *length, &splits,
+                                    &crossing, work);
     if (splits < 0) {
         return PL_TOO_MANY_EVENTS | pl_not_finite(s->poly[0], (PL_ORDER + 1) * PL_COLUMNS);
     }
@@ -113,12 +114,12 @@ static inline int PL(end_at_crossing)(PL_TYPE *s, const real terms[PL_EXPRESSION
 }
 #endif
 
-/* An internal step by the series, up to where it serves or an expression passes a breakpoint: 0, or what went wrong:
- * PL_NOT_FINITE, it is of no use.  Where stability bounds several in a row, the collocation is next. */
+/* An internal step by the series, up to where it serves or a switching function passes a breakpoint: 0, or what went
+ * wrong: PL_NOT_FINITE, it is of no use.  Where stability bounds several in a row, the collocation is next. */
 static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], real limit, const real rates[2])
 {
     real terms[PL_ROOM(PL_TERMS)], length, product;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     real most;
     int wrong;
 #endif
@@ -157,7 +158,7 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
         s->product = product;
         s->run = s->bounds = 0;
     }
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     most = length;
     wrong = PL(end_at_crossing)(s, terms, &length);
     if (wrong) {

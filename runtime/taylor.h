@@ -9,10 +9,11 @@
  *     PL_WATCHED                 of fixed order, with a tolerance: PL_INACCURATE where it is not met
  *     PL_OVER                    one series of fixed order is over so many steps: series, next, left, served; 1: no
  *     PL_PARTS                   whether steps may go in parts: with between.h
- *     PL_STRAIGHT                whether one of fixed order is no array, and its sum the model's: PL(whole)
+ *     PL_STRAIGHT                whether one of fixed order is no array, and its sum the model's: PL(full_step)
  *     PL_WRITTEN_OUT             whether sums of a series are the model's: PL(ahead), PL(end), PL(within)
  *     PL_INPUTS, PL_SEGMENTS     samples; in how many spans of time loads have a formula each: segment; 1: just one
- *     PL_EXPRESSIONS, PL_TERMS   that choose formulas: contact; these and what contacts watch; PL_CHANGES at one time
+ * PL_SWITCHING_FUNCTIONS, PL_TERMS   that choose formulas: contact; these and what contacts watch; PL_CHANGES at one
+ * time
  *     PL_CHOICES                 of formulas by t
  *     PL_CONTACTS                impacts, contacts at rest, friction: PL(events)
  *     PL_MAX_EVENTS, PL_MAX_SPLITS, PL_TRIES     in a step: crossings, halvings in the search of one, series
@@ -71,13 +72,13 @@ static void PL(ahead)(const real c[PL_ORDER + 1][PL_COLUMNS], real theta, real g
 #endif
 
 #if !PL_WRITTEN_OUT && PL_ADAPTIVE
-static void PL(end)(const real c[PL_ORDER + 1][PL_COLUMNS], real m, real end[PL_STATES], real rest[PL_STATES])
+static void PL(end)(const real c[PL_ORDER + 1][PL_COLUMNS], real m, real end[PL_STATES], real low[PL_STATES])
 {
     real gain[PL_STATES];
     int i;
     PL(ahead)(c, m, gain);
     for (i = 0; i < PL_STATES; i++) {
-        end[i] = pl_accumulate(c[0][i], gain[i], 0, &rest[i]);
+        end[i] = pl_accumulate(c[0][i], gain[i], 0, &low[i]);
     }
 }
 #endif
@@ -86,7 +87,7 @@ static void PL(end)(const real c[PL_ORDER + 1][PL_COLUMNS], real m, real end[PL_
 #if PL_ADAPTIVE
 #define PL_BASE base
 #else
-#define PL_BASE rest
+#define PL_BASE low
 #endif
 
 #if (PL_ADAPTIVE || PL_OVER > 1) && (PL_AT || !PL_WRITTEN_OUT)
@@ -116,7 +117,7 @@ static inline void PL(take_end)(PL_TYPE *s)
     int i;
     for (i = 0; i < PL_STATES; i++) {
         s->y[i] = s->next[i];
-        s->rest[i] = s->left[i];
+        s->low[i] = s->left[i];
     }
 }
 #endif
@@ -265,7 +266,7 @@ static inline int PL(is_accurate)(const PL_TYPE *s, const real c[PL_ORDER + 1][P
 
 #if PL_ADAPTIVE
 
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
 /* Up to the first event that the series meets */
 static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[])
 {
@@ -274,7 +275,7 @@ static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[]
     PL(inputs_now)(s, u, p.start, p.slope);
     p.s = s;
     p.y = s->y;
-    p.rest = s->rest;
+    p.low = s->low;
     p.segment = PL(segment_of)(s);
     p.splits = PL_MAX_SPLITS;
     PL(watch)(&p, &s->contact);
@@ -282,14 +283,15 @@ static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[]
     p.at.terms = terms;
     s->valid = (int)pl_events_end(&PL(events), &p.at, (real)s->valid, &p.splits);
 #else
-    real work[PL_DIVIDED_WORK(PL_ORDER)], next;
+    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)], next;
     pl_crossing crossing = s->contact.last;
     int splits = PL_MAX_SPLITS;
-    if (pl_divided_left(&PL(divided), s->series[0], terms, s->contact.interval, &crossing)) {
+    if (pl_series_switching_left(&PL(series_switching), s->series[0], terms, s->contact.interval, &crossing)) {
         s->valid = 0;
         return;
     }
-    next = pl_divided_next(&PL(divided), s->series[0], terms, s->contact.interval, (real)s->valid, &splits, &crossing,
+    next = pl_series_switching_next(&PL(series_switching), s->series[0], terms, s->contact.interval, (real)s->valid,
+                                    &splits, &crossing,
                            work);
     if (splits < 0 || (next >= 0 && next < (real)s->valid)) {
         s->valid = splits < 0 ? 0 : (int)next;
@@ -310,7 +312,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
     real terms[PL_ROOM(PL_TERMS)], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
     int i;
     PL(inputs_now)(s, u, start, slope);
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     interval = s->contact.interval;
 #endif
     PL(measure)(s);
@@ -329,7 +331,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
         s->valid = (int)(change / PL_H);
     }
 #endif
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     if (s->valid) {
         PL(end_before_event)(s, u, terms);
         if (s->valid) {
@@ -345,7 +347,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
 #endif
     s->served = 0;
     for (i = 0; i < PL_STATES; i++) {
-        s->base[i] = s->left[i] = s->rest[i];
+        s->base[i] = s->left[i] = s->low[i];
     }
     if (s->valid) {
         PL(end)((const real (*)[PL_COLUMNS])s->series, (real)s->valid, s->next, s->left);
@@ -361,7 +363,7 @@ static PL_APART void PL(inside)(PL_TYPE *s)
 {
     PL(within)(s, (real)(s->served + 1));
     s->served++;
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     s->contact.crossings = 0;
 #endif
     PL(pass_time)(s, NULL);
@@ -372,14 +374,14 @@ static PL_APART void PL(inside)(PL_TYPE *s)
 static PL_APART void PL(border)(PL_TYPE *s, const real u[])
 {
     if (s->served == s->valid) {
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
         if (!s->contact.placed) {
             PL(locate)(s, u, &s->contact);
         }
 #endif
         PL(renew)(s, u);
     }
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     s->contact.crossings = 0;
 #endif
 #if PL_INPUTS == 0
@@ -389,7 +391,7 @@ static PL_APART void PL(border)(PL_TYPE *s, const real u[])
     }
 #endif
     if (s->valid == 0) {
-        s->status |= PL(between)(s, u, !s->most, 1, s->y, s->rest, PL_MET_BY(s));
+        s->status |= PL(between)(s, u, !s->most, 1, s->y, s->low, PL_MET_BY(s));
         s->most = 1;
     } else {
         s->served = s->valid;
@@ -423,7 +425,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
     PL(inputs_now)(s, u, start, slope);
     PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, s->series, NULL);
     for (i = 0; i < PL_STATES; i++) {
-        s->left[i] = s->rest[i];
+        s->left[i] = s->low[i];
     }
     PL(total)((const real (*)[PL_COLUMNS])s->series, s->y, s->next, s->left);
 #if PL_WATCHED
@@ -437,7 +439,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
     s->status |= PL_LOST;
     for (i = 0; i < PL_STATES; i++) {
         s->next[i] = s->y[i];
-        s->left[i] = s->rest[i];
+        s->left[i] = s->low[i];
         for (k = 1; k <= PL_ORDER; k++) {
             s->series[k][i] = 0;
         }
@@ -465,10 +467,10 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(ready)(s, u, PL_MET_BY(s));
 #endif
-    s->status |= PL(between)(s, u, 0, 1, s->y, s->rest, PL_MET_BY(s));
+    s->status |= PL(between)(s, u, 0, 1, s->y, s->low, PL_MET_BY(s));
 #if PL_WATCHED
     PL(measure)(s);
 #endif
@@ -481,15 +483,15 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 /* One way through but for what is kept: what is not finite is not. */
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
-    real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], rest[PL_STATES];
+    real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], low[PL_STATES];
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
     int i;
     PL(inputs_now)(s, u, start, slope);
     PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
     for (i = 0; i < PL_STATES; i++) {
-        rest[i] = s->rest[i];
+        low[i] = s->low[i];
     }
-    PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, rest);
+    PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
 #if PL_WATCHED
     if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
         s->status |= PL_INACCURATE;
@@ -500,7 +502,7 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     } else {
         for (i = 0; i < PL_STATES; i++) {
             s->y[i] = next[i];
-            s->rest[i] = rest[i];
+            s->low[i] = low[i];
         }
 #if PL_WATCHED
         PL(measure)(s);
@@ -513,7 +515,7 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 
 /* ---- a state that was set ---- */
 
-#if PL_REMAINDERS > 0 || PL_OVER > 1 || PL_EXPRESSIONS > 0
+#if PL_REMAINDERS > 0 || PL_OVER > 1 || PL_SWITCHING_FUNCTIONS > 0
 /* What follows from it */
 static void PL(place)(PL_TYPE *s)
 {
@@ -532,7 +534,7 @@ static void PL(place)(PL_TYPE *s)
     }
     PL(measure)(s);
 #endif
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(forget)(&s->contact);
 #endif
 }
@@ -545,8 +547,8 @@ static void PL(place)(PL_TYPE *s)
 static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, real y[PL_STATES])
 {
 #if PL_PARTS
-    real rest[PL_STATES];
-#if PL_EXPRESSIONS > 0
+    real low[PL_STATES];
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(contact) here = s->contact;
 #endif
 #else
@@ -571,20 +573,20 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, re
 #if PL_PARTS
     for (i = 0; i < PL_STATES; i++) {
         y[i] = s->y[i];
-        rest[i] = s->rest[i];
+        low[i] = s->low[i];
     }
-#if PL_EXPRESSIONS > 0
+#if PL_SWITCHING_FUNCTIONS > 0
     PL(ready)(s, u, &here);
-    PL(between)(s, u, fresh, tau / PL_H, y, rest, &here);
+    PL(between)(s, u, fresh, tau / PL_H, y, low, &here);
 #else
-    PL(between)(s, u, fresh, tau / PL_H, y, rest, NULL);
+    PL(between)(s, u, fresh, tau / PL_H, y, low, NULL);
 #endif
 #else
     PL(inputs_now)(s, u, start, slope);
     PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
     PL(ahead)((const real (*)[PL_COLUMNS])c, tau / (PL_OVER * PL_H), gain);
     for (i = 0; i < PL_STATES; i++) {
-        y[i] = s->y[i] + (gain[i] + s->rest[i]);
+        y[i] = s->y[i] + (gain[i] + s->low[i]);
     }
     (void)fresh;
 #endif

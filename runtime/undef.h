@@ -52,7 +52,7 @@
 #undef PL_DAMPED
 #undef PL_DEGREE
 #undef PL_DIRECT
-#undef PL_DIVIDED
+#undef PL_SWITCHING_TABLES
 #undef PL_DRIVEN
 #undef PL_EACH
 #undef PL_ELAPSED
@@ -62,7 +62,7 @@
 #undef PL_EQUATIONS
 #undef PL_EVENT_COLUMNS
 #undef PL_EVENT_ORDER
-#undef PL_EXPRESSIONS
+#undef PL_SWITCHING_FUNCTIONS
 #undef PL_FACTORS
 #undef PL_FASTEST
 #undef PL_FEW
@@ -242,7 +242,7 @@
 #undef PL_WATCH_READS
 #undef PL_WAY
 #undef PL_WAYS
-#undef PL_WAVES
+#undef PL_FORCINGS
 #undef PL_WHOLE
 #undef PL_WIDE
 #undef PL_WIDTH

@@ -7,8 +7,8 @@
  *     PL(of_nodes)[], PL(of_past)[]     of polynomials through forces at nodes, through past ones and the new one:
  *                                powers 1 and up from what the other forces exceed that at the start by
  *     PL(stiffness)[][PL_WIDTH], PL(damping)[][PL_WIDTH]   of each operator: lambda [1/s^2], 2 delta [1/s] of each mode
- *     PL(swing_on)(which, by, wave, swing, force)   of known loads: adds their part to the forces of a term, their next
- *                                term to wave */
+ * PL(swing_on)(which, by, forcing, swing, force)   of known loads: adds their part to the forces of a term, their next
+ *                                term to forcing */
 
 #if PL_POINTS > 0
 #define PL_DEGREE PL_POINTS
@@ -78,12 +78,12 @@ static int PL(forces_of_step)(const PL_TYPE *s, PL_TYPE *next, real force[PL_DEG
 /* eta and rate go on by tau, over parts of it.  power: the polynomial of forces; or else f: functions of time that no
  * longer change, and forces are what acts on each term. */
 static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real power[PL_DEGREE + 1][PL_WIDTH],
-                      const real *f, real wave[], real eta[PL_WIDTH], real rate[PL_WIDTH])
+                      const real *f, real forcing[], real eta[PL_WIDTH], real rate[PL_WIDTH])
 {
     const real theta = tau / PL_H;
     const int parts = theta > 0 && theta < 1 ? 1 + (int)(theta * PL_TURNS) : PL_TURNS + 1;
     const real d = theta / (real)parts;
-    real x[PL_WIDTH], v[PL_WIDTH], force[PL_WIDTH], still[PL_WIDTH], swing[PL_WAVES + 1];
+    real x[PL_WIDTH], v[PL_WIDTH], force[PL_WIDTH], still[PL_WIDTH], swing[PL_FORCINGS + 1];
     int i, j, k, part;
     for (i = 0; i < PL_WIDTH; i++) {
         x[i] = v[i] = still[i] = 0;
@@ -97,8 +97,8 @@ static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real po
             x[i] = eta[i];
             v[i] = rate[i];
         }
-        for (i = 0; i < PL_WAVES; i++) {
-            swing[i] = wave[i];
+        for (i = 0; i < PL_FORCINGS; i++) {
+            swing[i] = forcing[i];
         }
         for (k = 0; k < PL_TERMS; k++) {
             const real by = d * PL_H / (real)(k + 1);
@@ -108,8 +108,8 @@ static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real po
             for (i = 0; i < PL_WIDTH; i++) {
                 force[i] = f != NULL ? force[i] - (k ? still[i] : 0) : k <= degree ? scale * power[k][i] : 0;
             }
-#if PL_WAVES > 0
-            PL(swing_on)(which, by, wave, swing, force);
+#if PL_FORCINGS > 0
+            PL(swing_on)(which, by, forcing, swing, force);
 #endif
             for (i = 0; i < PL_WIDTH; i++) {
 #if PL_DAMPED
@@ -139,7 +139,7 @@ static void PL(go_on)(const PL_TYPE *s, int which, real tau, int degree, real po
 void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
 {
     PL_TYPE next = *s;
-    real force[PL_DEGREE + 1][PL_WIDTH], wave[PL_WAVES + 1];
+    real force[PL_DEGREE + 1][PL_WIDTH], forcing[PL_FORCINGS + 1];
     const real *steady = NULL;
     int i, degree = 0;
 #if PL_STEADY
@@ -154,7 +154,7 @@ void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
 #endif
     }
 #endif
-    PL(waves_now)(s, wave);
+    PL(forcings_now)(s, forcing);
     if (steady == NULL) {
         degree = PL(forces_of_step)(s, &next, force);
         next.which = s->which;
@@ -163,7 +163,7 @@ void PL(at)(const PL_TYPE *s, real tau, real y[2 * PL_MODES])
             next.rate[i] = s->rate[i];
         }
     }
-    PL(go_on)(s, next.which, tau, degree, force, steady, wave, next.eta, next.rate);
+    PL(go_on)(s, next.which, tau, degree, force, steady, forcing, next.eta, next.rate);
     PL(of_modes)(next.which, next.eta, y);
     PL(of_modes)(next.which, next.rate, y + PL_MODES);
 }

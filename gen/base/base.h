@@ -10,7 +10,7 @@
  *   Phi        transfer matrix over one step: y(t+h) = Phi y(t) + loads; y = coordinates, then velocities
  *   h, tau     the step; a time after the step's start
  *   w, p       angular frequency [rad/s] and phase [rad] of a load cos(w t + p)
- *   wave       a load cos(w t + p) or sin(w t + p); the two of one (w, p) share an oscillator
+ *   forcing term       a load cos(w t + p) or sin(w t + p); the two of one (w, p) share an oscillator
  *   held       terms that a scheme keeps at their value at the start of the step
  *
  * Data flow: source -> tokens -> nodes -> model (exact) -> images N/D (exact) -> poles, residues (enclosed)
@@ -53,7 +53,7 @@ enum {
 	LIMIT_STRAIGHTS = 100,      /* pieces of a table likewise */
 	LIMIT_PIECES = 30,          /* halvings of a step in which crossings are looked for */
 	MAX_SPLITS = 500,           /* of intervals in search of them, in a step */
-	LIMIT_WAVES = 500,          /* frequencies, phases and growths of loads */
+	LIMIT_FORCINGS = 500,       /* frequencies, phases and growths of loads */
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
 	LIMIT_TUNED_NUMBERS = 8192, /* of matrices of regions that an instance has, where params change them */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
@@ -73,7 +73,7 @@ enum {
 	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
-	LIMIT_SCENE = 1000,         /* of a scene, */
+	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */
 	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
 	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
 	/* of an expression in operations, through params and lets; a function of many arguments counts as many */

@@ -42,7 +42,8 @@ static size_t form_hash(const struct form *form)
 		const struct basis *basis = &form->term[i].basis;
 		hash = mix(hash, (size_t)basis->kind * 8 + (size_t)basis->order * 2 + basis->sine);
 		hash = mix(hash,
-			   basis->wave ? (size_t)basis->wave->index * 64 + (size_t)basis->power : (size_t)basis->index);
+			   basis->forcing ? (size_t)basis->forcing->index * 64 + (size_t)basis->power
+			   : (size_t)basis->index);
 		hash = mix(hash, mpz_get_ui(mpq_numref(form->term[i].factor)) +
 					 3 * mpz_get_ui(mpq_denref(form->term[i].factor)));
 	}
@@ -75,7 +76,7 @@ static void add_dependence(const struct collector *c, struct atom *atom, const s
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		atom->time = atom->time || basis->kind == BASIS_WAVE || (basis->atom && basis->atom->time);
+		atom->time = atom->time || basis->kind == BASIS_FORCING || (basis->atom && basis->atom->time);
 		atom->input = atom->input || basis->kind == BASIS_INPUT || (basis->atom && basis->atom->input);
 		atom->state = atom->state || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
 		atom->velocity = atom->velocity || is_velocity(c->frame, basis);
@@ -86,7 +87,7 @@ static void add_dependence(const struct collector *c, struct atom *atom, const s
 
 bool depends_on_time_only(const struct basis *basis)
 {
-	return basis->atom ? !basis->atom->input && !basis->atom->state : basis->kind <= BASIS_WAVE;
+	return basis->atom ? !basis->atom->input && !basis->atom->state : basis->kind <= BASIS_FORCING;
 }
 
 /* Highest derivatives are what the equations are solved for: they cannot stand inside, but as the velocity of friction
@@ -321,7 +322,7 @@ static struct parts parts_of(const struct collector *c, const struct form *form)
 	struct parts parts = { NEW(struct form), NEW(struct form), NEW(struct form) };
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
-		bool time = term->basis.kind == BASIS_WAVE || (c->whole_time && depends_on_time_only(&term->basis));
+		bool time = term->basis.kind == BASIS_FORCING || (c->whole_time && depends_on_time_only(&term->basis));
 		struct form **part = term->basis.kind <= BASIS_PI ? &parts.constant : time ? &parts.time : &parts.rest;
 		form_add_basis(*part, term->basis, term->factor);
 	}

@@ -246,16 +246,16 @@ static const struct fixing *fixed_time(const struct point *p)
 }
 
 /* t^k e^{a t} cos or sin(w t + p) */
-static struct form *wave_at(const struct point *p, const struct basis *basis, const struct fixing *time)
+static struct form *forcing_at(const struct point *p, const struct basis *basis, const struct fixing *time)
 {
-	const struct wave *wave = basis->wave;
+	const struct forcing *forcing = basis->forcing;
 	const struct node *node = &(struct node){ .kind = NODE_CALL, .at = time->at };
-	struct form *value = constant_call(p->c, node, FN_EXP, form_scale(time->form, wave->a));
+	struct form *value = constant_call(p->c, node, FN_EXP, form_scale(time->form, forcing->a));
 	for (int k = 0; k < basis->power; k++)
 		value = form_product(p->c, value, time->form);
-	if (!oscillates(wave))
+	if (!oscillates(forcing))
 		return value;
-	const struct form *angle = sum(form_scale(time->form, wave->w), form_constant(wave->p));
+	const struct form *angle = sum(form_scale(time->form, forcing->w), form_constant(forcing->p));
 	return form_product(p->c, value, constant_call(p->c, node, basis->sine ? FN_SIN : FN_COS, angle));
 }
 
@@ -321,8 +321,8 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 	mpq_srcptr value = is_named ? fixed_value(p, basis) : NULL;
 	if (value)
 		return form_constant(value);
-	if (basis->kind == BASIS_WAVE && time)
-		return wave_at(p, basis, time);
+	if (basis->kind == BASIS_FORCING && time)
+		return forcing_at(p, basis, time);
 	if (basis->kind != BASIS_ATOM)
 		return form_unit(*basis);
 	int index = basis->atom->index;

@@ -339,7 +339,7 @@ static void collect_value(struct collector *c, struct symbol *symbol)
 	if (symbol->kind == SYMBOL_PARAM && !is_scalar(value))
 		error(symbol->value->start, "matrix NAME = ...", "a param is a number, found a %s matrix",
 		      shape_text(value));
-	c->waves = inner.waves;
+	c->forcings = inner.forcings;
 	c->irrationals = inner.irrationals;
 	symbol->made.irrational = inner.irrational_count > c->irrational_count;
 	c->irrational_count = inner.irrational_count;
@@ -434,7 +434,7 @@ static struct value *collect_anew(struct collector *c, struct node *node)
 	case NODE_PI:      return scalar(form_unit((struct basis){ .kind = BASIS_PI }));
 	case NODE_TIME:
 		need_constant(c, node, "'t'");
-		return scalar(plain_wave(c, 1, NULL));
+		return scalar(plain_forcing(c, 1, NULL));
 	case NODE_NAME:    return collect_name(c, node);
 	case NODE_SUM:     return collect_sum(c, node);
 	case NODE_PRODUCT: return collect_product(c, node);

@@ -12,12 +12,12 @@ struct frame {                      /* the coordinates that forms are over */
 	struct symbol **coord;      /* one a coordinate, `highest` its order */
 	struct form **const *form;  /* [derivative][written coordinate]: over them; NULL: they are the written ones */
 };
-enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_WAVE, BASIS_INPUT, BASIS_COORD, BASIS_ATOM };
+enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_FORCING, BASIS_INPUT, BASIS_COORD, BASIS_ATOM };
 struct basis {
 	enum basis_kind kind;
 	/* of BASIS_COORD and BASIS_INPUT: which, and how often differentiated; of BASIS_ATOM: its index */
 	int index, order;
-	struct wave *wave;          /* of BASIS_WAVE: t^power times its cos or sin */
+	struct forcing *forcing;    /* of BASIS_FORCING: t^power times its cos or sin */
 	int power;
 	bool sine;
 	const struct atom *atom;    /* of BASIS_ATOM: an expression that the linear core cannot carry */
@@ -27,11 +27,11 @@ struct kept_response {              /* of load state `to` to load state `from`: 
 	struct response *response;
 	struct kept_response *next;
 };
-struct wave {                       /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
+struct forcing {                    /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
 	mpq_t a, w, p;
 	int index;                  /* in the order of first appearance */
 	struct kept_response **kept;
-	struct wave *next;          /* of the same hash */
+	struct forcing *next;       /* of the same hash */
 };
 struct form_term {
 	struct basis basis;
@@ -81,7 +81,7 @@ struct form *coordinate_form(const struct frame *frame, int coord, int order);
 /* which became rationals of 256 bits; `root`: of a power */
 struct irrationals { bool used[FN_FRICTION + 1], pi, root; };
 struct collector {
-	struct waves *waves;        /* made on first use; of the collectors inside it too */
+	struct forcings *forcings;  /* made on first use; of the collectors inside it too */
 	struct irrationals irrationals;
 	int irrational_count;       /* how often one was met */
 	const char *scheme;         /* for the message about a term that it cannot treat */
@@ -131,18 +131,18 @@ void wide_value(enum function function, mpfr_ptr x);         /* x = function(x) 
 bool constant_atan2(struct place at, mpq_srcptr y, mpq_srcptr x, mpq_ptr value);
 bool constant_power(struct place at, mpq_srcptr base, mpq_srcptr exponent, mpq_ptr value);
 
-/* ---- wave.c: loads in time ---- */
+/* ---- forcing.c: loads in time ---- */
 
-struct wave *wave_of(struct collector *collector, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p);
-struct form *plain_wave(struct collector *collector, int power, mpq_srcptr a); /* t^power e^{a t}; a NULL: 0 */
-struct form *collect_wave(struct collector *collector, bool sine, mpq_srcptr frequency, const struct form *phase);
+struct forcing *forcing_of(struct collector *collector, mpq_srcptr a, mpq_srcptr w, mpq_srcptr p);
+struct form *plain_forcing(struct collector *collector, int power, mpq_srcptr a); /* t^power e^{a t}; a NULL: 0 */
+struct form *collect_forcing(struct collector *collector, bool sine, mpq_srcptr frequency, const struct form *phase);
 /* of loads and constants */
 struct form *load_product(struct collector *collector, const struct form *a, const struct form *b);
 /* x = factor t + phase, factor not 0 */
 bool linear_in_time(const struct form *x, mpq_srcptr *factor, struct form *phase);
-bool is_polynomial(const struct wave *wave);                /* t^k alone */
+bool is_polynomial(const struct forcing *forcing);          /* t^k alone */
 bool is_linear_in_time(const struct form *form);            /* a + b t: it is known when it passes 0 */
-bool oscillates(const struct wave *wave);
+bool oscillates(const struct forcing *forcing);
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 

@@ -191,7 +191,7 @@ static void add_asked(struct dimensions *w)
 		add_terms(w, group, initial->value);
 	}
 	add_bounds(w, spec->ranges, spec->range);
-	add_bounds(w, spec->asked.absolutes, spec->asked.absolute_of);
+	add_bounds(w, spec->request.absolutes, spec->request.absolute_of);
 	for (int i = 0; i < spec->tunables; i++) {
 		const struct tunable *tunable = &spec->tunable[i];
 		if (!tunable->low)
@@ -209,9 +209,9 @@ static void add_asked(struct dimensions *w)
 		for (int k = 0; k < f->values; k++)
 			add_terms(w, group, f->value[k]);
 	}
-	if (spec->asked.step) {
-		int group = add_pair(w, &spec->asked, "a step", "t", spec->asked.step_at, dimension_of_time(1));
-		add_terms(w, group, spec->asked.step);
+	if (spec->request.step) {
+		int group = add_pair(w, &spec->request, "a step", "t", spec->request.step_at, dimension_of_time(1));
+		add_terms(w, group, spec->request.step);
 	}
 	for (int i = 0; i < spec->required.needs; i++)
 		add_need(w, &spec->required.need[i]);

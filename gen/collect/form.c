@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forms: sums of rational factors times basis elements: 1, pi, waves (t^k e^{at} cos or sin), inputs, coordinates and
- * their derivatives. pi stays a basis element until it meets another factor: quarter turns are decided exactly. */
+/* Forms: sums of rational factors times basis elements: 1, pi, forcing terms (t^k e^{at} cos or sin), inputs,
+ * coordinates and their derivatives. pi stays a basis element until it meets another factor: quarter turns are decided
+ * exactly. */
 #include "collect/collect.h"
 
 #include <string.h>
@@ -9,10 +10,10 @@ int basis_order(const struct basis *a, const struct basis *b)
 {
 	if (a->kind != b->kind)
 		return (int)a->kind - (int)b->kind;
-	if (a->kind != BASIS_WAVE)
+	if (a->kind != BASIS_FORCING)
 		return a->index != b->index ? a->index - b->index : a->order - b->order;
-	if (a->wave != b->wave)
-		return a->wave->index - b->wave->index;
+	if (a->forcing != b->forcing)
+		return a->forcing->index - b->forcing->index;
 	return a->power != b->power ? a->power - b->power : (int)a->sine - (int)b->sine;
 }
 

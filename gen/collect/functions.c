@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Functions of forms: waves and exponentials where the argument is linear in time, atoms where a scheme takes them,
- * and dry friction. */
+/* Functions of forms: forcing terms and exponentials where the argument is linear in time, atoms where a scheme takes
+ * them, and dry friction. */
 #include "collect/collect.h"
 
 static struct form *not_a_load(struct collector *c, const struct node *node, struct form *x)
@@ -20,7 +20,7 @@ static struct form *sine_of(struct collector *c, struct node *node, struct form 
 		return constant_call(c, node, node->function, x);
 	if (!linear_in_time(x, &w, &phase))
 		return not_a_load(c, node, x);
-	return collect_wave(c, node->function == FN_SIN, w, &phase);
+	return collect_forcing(c, node->function == FN_SIN, w, &phase);
 }
 
 /* e^{a t + b} = e^b e^{a t} */
@@ -32,8 +32,8 @@ static struct form *exponential_of(struct collector *c, struct node *node, struc
 		return constant_call(c, node, FN_EXP, x);
 	if (!linear_in_time(x, &a, &phase))
 		return not_a_load(c, node, x);
-	struct form *wave = plain_wave(c, 0, a);
-	return phase.terms ? form_product(c, constant_call(c, node, FN_EXP, &phase), wave) : wave;
+	struct form *forcing = plain_forcing(c, 0, a);
+	return phase.terms ? form_product(c, constant_call(c, node, FN_EXP, &phase), forcing) : forcing;
 }
 
 struct form *function_of_form(struct collector *c, struct node *node, struct form *x)

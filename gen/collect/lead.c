@@ -12,7 +12,7 @@ static struct contents contents_of(const struct collector *c, const struct form 
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct basis *basis = &(*term)->basis;
 		bool acting = basis->kind == BASIS_INPUT && c->params == PARAMS_INPUTS && basis->index >= c->inputs;
-		found.time = found.time || basis->kind == BASIS_WAVE;
+		found.time = found.time || basis->kind == BASIS_FORCING;
 		found.tuned = found.tuned || acting || (basis->atom && basis->atom->kind == ATOM_PARAM);
 		found.other = found.other || basis->kind == BASIS_COORD || (basis->kind == BASIS_INPUT && !acting);
 	}
@@ -61,7 +61,7 @@ static struct form *rate_of(struct collector *c, const struct form *x)
 		const struct form *slope = NULL;
 		if (!contents_of(c, form_unit(term->basis)).time)
 			continue;
-		if (term->basis.kind == BASIS_WAVE && is_polynomial(term->basis.wave) && term->basis.power < 2)
+		if (term->basis.kind == BASIS_FORCING && is_polynomial(term->basis.forcing) && term->basis.power < 2)
 			slope = form_number(term->basis.power);
 		else if (a && a->kind == ATOM_PRODUCT)
 			slope = rate_of_product(c, a);

@@ -45,7 +45,7 @@ static void emit_flags(const struct emitter *e)
 	int *list = ARRAY(int, (size_t)(e->growths + e->system->inputs));
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->growth[l] >= 0)
-			list[e->growth[l]] = mpq_sgn(e->system->load[l].wave->a) < 0;
+			list[e->growth[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
 	if (e->growths)
 		emit_integers(e, "unsigned char", "falls", e->growths, list);
 	for (int i = 0; i < e->system->inputs; i++)
@@ -59,7 +59,7 @@ static const char *elapsed_text(const struct emitter *e)
 {
 	mpz_srcptr p = mpq_numref(e->model->h), q = mpq_denref(e->model->h);
 	size_t bits = mpz_sizeinbase(p, 2), divisor_bits = mpz_sizeinbase(q, 2);
-	bool single = e->model->asked.single;
+	bool single = e->model->request.single;
 	bool short_fraction = bits <= (single ? 12 : 40) && divisor_bits <= (single ? 24 : 53);
 	if (e->step->is.tuned || !short_fraction)
 		return format("(double)s->k * %s", step_length(e));
@@ -104,7 +104,7 @@ void emit_access(const struct emitter *e)
 		   { "PAST_SAMPLES", most_samples_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));
 	if (step->forced && step->forced->written) {
-		say_macro(e, "COLUMNS", whole_text(step->branch->whole->columns));
+		say_macro(e, "COLUMNS", integer_text(step->branch->full->columns));
 		say_macro(e, "SUSTAINED", spell(e, loads_change(e->system) ? "$n_forced_part[s->segment]"
 									   : "$n_forced_part[0]"));
 	}

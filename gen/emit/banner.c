@@ -12,7 +12,7 @@
 #include "report/report.h"
 #include "step/collocation/collocation.h"
 #include "step/cost.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
@@ -43,7 +43,7 @@ static void banner_equations(const struct emitter *e)
 		say(e, " *     %s\n", written_text(equation[i].part, equation[i].at, equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
 		say(e, " *     %s\n", written_text(element[i].part, element[i].at, element[i].end));
-	for (int i = 0; i < spec->scene.parts; i++)
+	for (int i = 0; i < spec->assembly.parts; i++)
 		if (parts_text(spec, i))
 			say(e, "%s%s.\n", i ? " *     and " : " *\n * Of parts: ", printable(parts_text(spec, i)));
 }
@@ -67,7 +67,7 @@ static void banner_poles(const struct emitter *e)
 #define banner_sentence(e, ...) say_words(e, format(__VA_ARGS__))
 
 #define region_number \
-	"The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of expression 0, " \
+	"The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of switching function 0, " \
 	"n0 how many intervals that has."
 
 /* What the scheme is; nothing of exact */
@@ -97,7 +97,7 @@ static void banner_modal_truncation(const struct emitter *e)
 	const struct model *model = e->model;
 	const char *lost = "";
 	for (int i = 0; i < model->outputs; i++)
-		lost = format("%s%s%s", lost, i ? ", " : "", loss_text(model, i));
+		lost = format("%s%s%s", lost, i ? ", " : "", truncation_text(model, i));
 	banner_sentence(e, "Modes %s of %d are kept; %s. From the start and under the loads%s outputs lose at most %s "
 			"(sums of |residues|, for all time).", mode_numbers(model->truncated, true),
 			modes_of_model(model->truncated), static_correction_text(model),
@@ -140,16 +140,16 @@ void banner_remainder(const struct emitter *e)
 
 static void banner_breakpoints(const struct emitter *e, const struct expansion *x)
 {
-	for (int i = 0; i < x->expressions; i++)
-		say(e, " *     expression %d: %s, at %s\n", i, printable(divided_text(e->step, i)),
-		    rising_text(&x->expression[i]));
+	for (int i = 0; i < x->functions; i++)
+		say(e, " *     switching function %d: %s, at %s\n", i, printable(series_switching_text(e->step, i)),
+		    rising_text(&x->function[i]));
 	if (regions_of_series(x))
 		banner_sentence(e, region_number);
 }
 
 static void report_no_phi(const struct emitter *e)
 {
-	say(e, " * The state is double-double: its low parts, which hold the rounding errors, are in rest.\n");
+	say(e, " * The state is double-double: its low parts, which hold the rounding errors, are in low.\n");
 	if (e->step->shown->no.phi)
 		say(e, " * There is no Phi: %s.\n", e->step->shown->no.phi);
 }
@@ -173,7 +173,7 @@ static void banner_impacts(const struct emitter *e)
 /* What is held beside a series, and what strikes */
 static void banner_contacts(const struct emitter *e)
 {
-	const struct contacts *c = e->step->taylor.divided->contacts;
+	const struct contacts *c = e->step->taylor.switching->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			say(e, " *     friction %d: %s\n", friction++, printable(contact_text(e->step, i)));
@@ -182,12 +182,13 @@ static void banner_contacts(const struct emitter *e)
 }
 
 /* What chooses formulas by the state */
-static void banner_divided(const struct emitter *e)
+static void banner_series_switching(const struct emitter *e)
 {
-	const struct expansion *x = e->step->taylor.divided;
+	const struct expansion *x = e->step->taylor.switching;
 	if (!x)
 		return;
-	banner_sentence(e, "The state chooses formulas: %s is of those between two crossings. Where an expression "
+	banner_sentence(e,
+			"The state chooses formulas: %s is of those between two crossings. Where a switching function "
 			"passes a breakpoint is the first root of its %s, found before it is stepped over; costs "
 			"below are without the search.",
 			e->step->collocation ? "an internal step" : "a series",
@@ -242,7 +243,7 @@ void banner_expanded(const struct emitter *e)
 		banner_sentence(e, "One expansion is over %d steps, with the error of one of %d h; those before the "
 				"last are values of its series. Costs are a step's share.", truncation->over,
 				truncation->over);
-	banner_divided(e);
+	banner_series_switching(e);
 	report_no_phi(e);
 }
 
@@ -265,7 +266,7 @@ void banner_collocated(const struct emitter *e)
 		say(e, " * One iteration of it: %d multiplications, %d additions, %d calls.\n",
 		    e->step->collocation->iteration.multiplications, e->step->collocation->iteration.additions,
 		    e->step->collocation->iteration.calls);
-	banner_divided(e);
+	banner_series_switching(e);
 	report_no_phi(e);
 }
 
@@ -278,7 +279,7 @@ void banner_normal(const struct emitter *e)
 	banner_sentence(e, "Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.",
 			operators_of_modes(e->step));
 	banner_sentence(e, "Exact: %s; approximated, by polynomials in time: all %s forces on the modes.",
-			exact_in_modes(e->step), model->remainder.split->waves ? "other" : "these");
+			exact_in_modes(e->step), model->remainder.split->forcings ? "other" : "these");
 	banner_sentence(e, "Step: %s.", course_of_modes(e->step));
 	banner_sentence(e, "Stability: %s.", stability_of_modes(e->step));
 	banner_sentence(e, "Tables: at most %d numbers, of which a step reads those of one operator.",
@@ -294,7 +295,7 @@ void banner_event_split(const struct emitter *e)
 	const struct event_split *event_split = e->step->event_split;
 	(e->step->normal ? banner_normal : banner_remainder)(e);
 	banner_sentence(e, "The state chooses formulas: steps go from crossing to crossing, the first root of the "
-			"cubic through an expression's values and slopes at both ends; there the formulas change.");
+			"cubic through a switching function's values and slopes at both ends; there formulas change.");
 	banner_breakpoints(e, event_split->event_check);
 	banner_sentence(e, "Parts of such a step%s go by scheme etdrk4, with e^{A tau} made by the target: some %d KB "
 			"of stack. The look takes %d multiplications and %d additions beside the costs below.",
@@ -303,14 +304,15 @@ void banner_event_split(const struct emitter *e)
 			event_split->multiplications, event_split->additions);
 }
 
-static void banner_expressions(const struct emitter *e)
+static void banner_switching_functions(const struct emitter *e)
 {
 	const struct model *model = e->step->shown->model;
 	const struct switching *s = model->switching;
-	for (int i = 0; i < s->expressions; i++)
-		say(e, " *     expression %d: %s%s, at %s\n", i, printable(form_text(model, s->expression[i].form)),
-		    changes_in_time(&s->expression[i]) ? " at first, with other loads later" : "",
-		    breakpoints_text(s->expression[i].breaks, (const mpq_t *)s->expression[i].at));
+	for (int i = 0; i < s->functions; i++)
+		say(e, " *     switching function %d: %s%s, at %s\n", i,
+		    printable(form_text(model, s->function[i].form)),
+		    changes_in_time(&s->function[i]) ? " at first, with other loads later" : "",
+		    breakpoints_text(s->function[i].breaks, (const mpq_t *)s->function[i].at));
 }
 
 static void banner_region_number(const struct emitter *e)
@@ -330,7 +332,7 @@ void banner_regions(const struct emitter *e)
 	if (s->segments > 1)
 		say(e, " * Loads change their formula: each of the %d segments of time has its own regions.\n",
 		    s->segments);
-	banner_expressions(e);
+	banner_switching_functions(e);
 	say(e, "%s", frictions_text(s, " *     "));
 	banner_impacts(e);
 	if (s->sharing)
@@ -351,16 +353,17 @@ static void banner_part(const struct emitter *e, int index)
 {
 	const struct step *part = e->step->regions.part[index];
 	const struct switching *s = part->model->switching;
-	const int *expression = e->model->switching->part[index].expression;
+	const int *function = e->model->switching->part[index].function;
 	const char *text = format("part %d:", index), *divides = "";
 	for (int i = 0; i < part->model->n; i++)
 		text = format("%s%s %s", text, i ? "," : "", part->model->names.coord[i]);
-	for (int i = 0; i < s->expressions; i++)
-		divides = format("%s%s %d", divides, i ? "," : "", expression[i]);
-	if (s->expressions == 0)
+	for (int i = 0; i < s->functions; i++)
+		divides = format("%s%s %d", divides, i ? "," : "", function[i]);
+	if (s->functions == 0)
 		say(e, " *     %s; linear\n", text);
 	else
-		say(e, " *     %s; expression%s%s; %d regions, %d different%s\n", text, s->expressions > 1 ? "s" : "",
+		say(e, " *     %s; switching function%s%s; %d regions, %d different%s\n", text,
+		    s->functions > 1 ? "s" : "",
 		    divides, possible_regions(s), s->systems,
 		    part->regions.event_check.fast_path
 		    ? format("; polynomials of degree %d", part->regions.event_check.degree)
@@ -376,7 +379,7 @@ void banner_parts(const struct emitter *e)
 	       " * regions and crossings of its own: in each region every constant is its closed form, correctly "
 	       "rounded;\n"
 	       " * crossings inside a step are found in order, to rounding.\n", e->step->regions.parts);
-	banner_expressions(e);
+	banner_switching_functions(e);
 	for (int p = 0; p < e->step->regions.parts; p++) {
 		banner_part(e, p);
 		fast_path = fast_path || e->step->regions.part[p]->regions.event_check.fast_path;
@@ -405,7 +408,7 @@ static void banner_relative(const struct emitter *e)
 {
 	const struct relative *r = e->model->relative;
 	const char *centre = centre_text(r);
-	say(e, " * What may move as a whole is kept apart from what moves in it: %s%s.\n", relative_text(e->model),
+	say(e, " * Rigid-body modes are kept apart from relative coordinates: %s%s.\n", relative_text(e->model),
 	    centre);
 	if (*centre)
 		say(e, " * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n");
@@ -415,10 +418,10 @@ static void banner_relative(const struct emitter *e)
 static void banner_modes(const struct emitter *e)
 {
 	const struct modal *modal = e->step->modal;
-	const char *unit = e->model->asked.single ? "2^-24" : "2^-53";
+	const char *unit = e->model->request.single ? "2^-24" : "2^-53";
 	const int lost = e->system->states / 8 + 5;
 	banner_sentence(e, "Modal: %d pairs of modes turned and damped, %d real ones; residues enclosed, each number "
-			"rounded once.%s", modal->pairs, modal->reals, e->model->asked.form == FORM_AUTO ? " It is "
+			"rounded once.%s", modal->pairs, modal->reals, e->model->request.form == FORM_AUTO ? " It is "
 			"the cheapest for so few outputs; --form delta or --form direct step the states." : "");
 	if (modal->output)
 		say(e, " * A row of outputs: %d multiplications.\n", e->system->states * e->model->outputs);
@@ -439,14 +442,14 @@ static void banner_form(const struct emitter *e)
 	struct drift drift = drift_of(e->step);
 	if (kept[e->step->form])
 		say(e, " * %s%s.\n", kept[e->step->form], e->step->program->compensated
-		    ? "; factors are double-double,\n * and so is the state, whose low parts are in rest" : "");
+		    ? "; factors are double-double,\n * and so is the state, whose low parts are in low" : "");
 	if (e->step->modal)
 		banner_modes(e);
 	if (e->step->no.modal)
 		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no.modal);
-	if (e->step->linear.rest)
+	if (e->step->linear.flush)
 		say(e, " * Denormal flush: every 64 steps $n_%s sets a motion that has decayed below %s to 0.\n",
-		    e->step->linear.rest->in_step ? "step" : "run", e->model->asked.single ? "1e-35" : "1e-290");
+		    e->step->linear.flush->in_step ? "step" : "run", e->model->request.single ? "1e-35" : "1e-290");
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carried.count)
@@ -456,7 +459,7 @@ static void banner_form(const struct emitter *e)
 		say(e, " * %s.\n", drift_text(&drift, e->model->h));
 	if (e->step->rounding.known)
 		say(e, " * %s.\n", rounding_text(e->step));
-	if (e->model->asked.single)
+	if (e->model->request.single)
 		say(e, " * Numbers and arithmetic are float; each constant is rounded to it once.\n");
 }
 
@@ -471,16 +474,16 @@ static void banner_cost(const struct emitter *e)
 	    program->multiplications, program->additions);
 	if (e->step->refresh)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
-		    e->step->refresh->steps, program->wave_multiplications, program->wave_additions);
-	else if (program->wave_multiplications)
-		say(e, ", %d of them and %d for the functions of the loads", program->wave_multiplications,
-		    program->wave_additions);
+		    e->step->refresh->steps, program->forcing_multiplications, program->forcing_additions);
+	else if (program->forcing_multiplications)
+		say(e, ", %d of them and %d for the functions of the loads", program->forcing_multiplications,
+		    program->forcing_additions);
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
 	if (is_linear_alone(e->step) && !e->step->refresh)
 		say(e, " * On a Cortex-M4, %s: about %s instructions.\n",
-		    e->model->asked.single ? "whose FPU has float" : "double in software",
+		    e->model->request.single ? "whose FPU has float" : "double in software",
 		    two_digits(instructions_of_linear(e->step)));
 	if (peaks_by_values(e->step))
 		banner_sentence(e, "Peaks are looked for by values inside a step where the last three ends do not "
@@ -530,10 +533,10 @@ static void banner_state(const struct emitter *e)
 /* What --fast would try: blocks of rows for a linear model, rotated phasors for loads that are not polynomials */
 static void banner_fast(const struct emitter *e)
 {
-	const struct request *asked = &e->model->asked;
+	const struct request *asked = &e->model->request;
 	bool rows = !asked->rows && !asked->single && is_linear_alone(e->step) && !e->step->is.tuned &&
 		    !step_objection(e->step, CAN_ROWS);
-	bool phasors = !asked->refresh && !e->step->refresh && e->step->program->wave_multiplications &&
+	bool phasors = !asked->refresh && !e->step->refresh && e->step->program->forcing_multiplications &&
 		       !step_objection(e->step, CAN_REFRESH);
 	if (!asked->fast && !asked->phasors && (rows || phasors))
 		say(e, " * For long runs plgen --fast adds tables where they pay:%s%s%s.\n",

@@ -28,12 +28,12 @@ static void emit_state_struct(const struct emitter *e)
 	if (e->step->modal)
 		say(e, "    double set[$N_STATES];  /* at the last set: %s */\n", state_list(e->model));
 	if (e->step->program->compensated)
-		say(e, "    double rest[$N_STATES];  /* low parts of y: accumulated rounding errors */\n");
+		say(e, "    double low[$N_STATES];  /* low parts of y: accumulated rounding errors */\n");
 	if (e->step->carried.count)
 		say(e, "    double carry[%d];      /* low part of %s: accumulated rounding errors */\n",
 		    e->step->carried.count, carried_text(e));
 	if (e->step->forced && !e->step->program->compensated && !e->model->relative)
-		say(e, "    double rest[$N_STATES];  /* low parts of y at the last set */\n");
+		say(e, "    double low[$N_STATES];  /* low parts of y at the last set */\n");
 	if (e->model->relative)
 		say(e, "    double set[$N_STATES], from[$N_STATES];  "
 		       "/* at the last set: the states as written, and as they are kept */\n");
@@ -120,7 +120,7 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	if (rhs)
 		announce(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
 				 given_inputs(e) ? "const double u[], " : ""), note);
-	if (e->model->asked.selftest)
+	if (e->model->request.selftest)
 		announce(e, spell(e, "double $n_selftest(void);"),
 			"largest deviation from the closed form, in units in the last place");
 }
@@ -182,7 +182,7 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	if (has_jump(e))
 		announce(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	emit_held_declarations(e);
-	if (e->model->asked.batch && !e->model->delays)
+	if (e->model->request.batch && !e->model->delays)
 		emit_batch_declarations(e);
 	declare_checks(e, rhs);
 	declare_tables(e);
@@ -214,7 +214,7 @@ void emit_counts(const struct emitter *e, int inputs)
 
 void emit_declarations(const struct emitter *e, bool rhs)
 {
-	open_declarations(e, e->model->asked.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
+	open_declarations(e, e->model->request.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
 						    : "#include \"plrt.h\"\n\n");
 	emit_counts(e, given_inputs(e));
 	emit_if_any(e->prints->constants, e);

@@ -13,7 +13,7 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 	int n = e->system->states;
 	double *value = ARRAY(double, (size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
-		value[i] = step->branch->whole->Phi[i].value;
+		value[i] = step->branch->full->Phi[i].value;
 	say(e, "\n%s[$N_STATES][$N_STATES] = {  /* columns: %s */\n", declaration, state_list(step->model));
 	emit_number_rows(e, n, n, value, step->model->names.state);
 	say(e, "};\n");
@@ -23,10 +23,10 @@ static void emit_matrix(const struct emitter *e, const struct step *step, const 
 static bool flows_in_full(const struct step *step)
 {
 	const struct program *program = step->program;
-	bool whole = false;
+	bool full = false;
 	for (int i = 0; i < program->actions; i++)
-		whole = whole || program->action[i].flow == 0;
-	return whole && program->loops;
+		full = full || program->action[i].flow == 0;
+	return full && program->loops;
 }
 
 /* Of the states that are kept, where a function reads it */
@@ -52,16 +52,16 @@ static void emit_rounded(const struct emitter *e, int rows, int columns, const m
 static void emit_mode_matrices(const struct emitter *e)
 {
 	const struct modal_truncation *s = e->model->truncated;
-	const struct model *whole = e->model->written;
-	const int states = e->system->states, all = whole->system.states;
+	const struct model *full = e->model->written;
+	const int states = e->system->states, all = full->system.states;
 	if (!s)
 		return;
 	say(e, "\n/* The state of a full state x, what the modes that are kept have of it: y = project x. */\n"
-	       "const double $n_project[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(whole));
+	       "const double $n_project[$N_STATES][%d] = {  /* columns: %s */\n", all, state_list(full));
 	emit_rounded(e, states, all, (const mpq_t *)s->to, e->model->names.state);
 	say(e, "\n/* The full state of a state, the part of the dropped modes left out: x = expand y. */\n"
 	       "const double $n_expand[%d][$N_STATES] = {  /* columns: %s */\n", all, state_list(e->model));
-	emit_rounded(e, all, states, (const mpq_t *)s->from, whole->names.state);
+	emit_rounded(e, all, states, (const mpq_t *)s->from, full->names.state);
 }
 
 /* Of the states as written */
@@ -73,7 +73,7 @@ static void emit_phi(const struct emitter *e)
 
 static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
 	for (int i = 0; i < table->states * table->inputs; i++)
 		value[i] = table->input[i].value;

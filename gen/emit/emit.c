@@ -9,7 +9,7 @@
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
 #include "step/certify/certify.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 
 #include <ctype.h>
@@ -24,24 +24,24 @@ static const char *upper_case(const char *name)
 
 /* ---- which loads the step or an output reads: others leave no trace ---- */
 
-struct wave_search {
-	const struct wave *wave;
+struct forcing_search {
+	const struct forcing *forcing;
 	bool found;
 };
 
-static void look_for_wave(void *context, const struct form *form)
+static void look_for_forcing(void *context, const struct form *form)
 {
-	struct wave_search *search = context;
+	struct forcing_search *search = context;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		search->found = search->found || (basis->kind == BASIS_WAVE && basis->wave == search->wave);
+		search->found = search->found || (basis->kind == BASIS_FORCING && basis->forcing == search->forcing);
 	}
 }
 
-static bool remainders_read(const struct model *model, const struct wave *wave)
+static bool remainders_read(const struct model *model, const struct forcing *forcing)
 {
-	struct wave_search search = { wave, false };
-	visit_remainders(model, look_for_wave, &search);
+	struct forcing_search search = { forcing, false };
+	visit_remainders(model, look_for_forcing, &search);
 	return search.found;
 }
 
@@ -53,8 +53,8 @@ static bool step_reads_load(const struct emitter *e, int load)
 	bool read = step->is.tuned;   /* for other params any may be */
 	if (e->model->switching)
 		read = step->regions.parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
-	for (int k = 0; step->normal && k < split->waves; k++)
-		read = read || split->wave[k].wave == e->system->load[load].wave;
+	for (int k = 0; step->normal && k < split->forcings; k++)
+		read = read || split->forcing[k].forcing == e->system->load[load].forcing;
 	return read || (step->event_split && step->event_split->event_check->load[load]) ||
 	       (step->taylor.expansion && step->taylor.expansion->load[load]) ||
 	       (step->collocation && motion_reads_load(e, load));
@@ -63,7 +63,7 @@ static bool step_reads_load(const struct emitter *e, int load)
 static bool load_is_needed(const struct emitter *e, int load)
 {
 	return step_reads_load(e, load) || load_acts(e->system, &e->system->load[load]) ||
-	       remainders_read(e->model, e->system->load[load].wave) || outputs_read(e, load);
+	       remainders_read(e->model, e->system->load[load].forcing) || outputs_read(e, load);
 }
 
 static void number_loads(struct emitter *e)
@@ -72,10 +72,10 @@ static void number_loads(struct emitter *e)
 	e->growth = ARRAY(int, (size_t)e->system->loads);
 	e->phasor = ARRAY(int, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++) {
-		const struct wave *wave = e->system->load[l].wave;
+		const struct forcing *forcing = e->system->load[l].forcing;
 		bool needed = load_is_needed(e, l);
-		e->phase[l] = needed && oscillates(wave) ? e->phases++ : -1;
-		e->growth[l] = needed && mpq_sgn(wave->a) != 0 ? e->growths++ : -1;
+		e->phase[l] = needed && oscillates(forcing) ? e->phases++ : -1;
+		e->growth[l] = needed && mpq_sgn(forcing->a) != 0 ? e->growths++ : -1;
 		e->phasor[l] = is_refreshed(e->step, l) ? e->refreshed : -1;
 		e->refreshed += is_refreshed(e->step, l) ? e->system->load[l].columns : 0;
 	}
@@ -134,7 +134,7 @@ static void emit_as_written(const struct emitter *e)
 	       "    defined _M_ARM64 || defined _M_FP_CONTRACT)\n"
 	       "#error \"what is certified needs products that are rounded before they are added: "
 	       "compile it and the runtime with -ffp-contract=off, and with -DPL_NOT_CONTRACTED\"\n"
-	       "#endif\n", e->model->asked.single ? "F" : "");
+	       "#endif\n", e->model->request.single ? "F" : "");
 }
 
 static void emit_includes(const struct emitter *e, bool rhs)
@@ -145,7 +145,7 @@ static void emit_includes(const struct emitter *e, bool rhs)
 		say(e, "\n#if PL_EXCESS_PRECISION%s\n"
 		       "#error \"two-word arithmetic needs sums that have the bits of their type: "
 		       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
-		       "#endif\n", e->model->asked.single ? "F" : "");
+		       "#endif\n", e->model->request.single ? "F" : "");
 	emit_as_written(e);
 }
 
@@ -170,9 +170,9 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		emit_if_any(e->prints->at, e);
 	if (has_jump(e))
 		emit_jump(e);
-	if (e->model->asked.batch && !e->model->delays)
+	if (e->model->request.batch && !e->model->delays)
 		emit_batch(e);
-	if (e->model->asked.selftest)
+	if (e->model->request.selftest)
 		emit_selftest(e, has_jump(e));
 	if (rhs)
 		emit_rhs(e);

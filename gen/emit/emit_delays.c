@@ -79,7 +79,7 @@ void emit_delay_declarations(const struct emitter *core)
 	declare_driven_step(e, "one step of h");
 	if (tunables_of(e->model))
 		declare_params(e);
-	if (e->model->asked.batch)
+	if (e->model->request.batch)
 		emit_batch_declarations(e);
 	declare_model(e);
 	close_declarations(e);
@@ -137,7 +137,7 @@ void emit_delays(const struct emitter *core)
 	const struct emitter outer = around(core), *e = &outer;
 	say(e, "\n/* ---- $n: the samples of delayed inputs ---- */\n");
 	emit_samples_of_core(e);
-	if (e->model->asked.batch)
+	if (e->model->request.batch)
 		emit_batch(e);
 	say(e, "\n");
 	emit_model(e, delays_of(e)->inputs, false);

@@ -132,7 +132,7 @@ static struct formulas *collected(const struct emitter *e, int segment, int inde
 {
 	const struct model *model = e->model;
 	int rows = model->written->n;
-	const struct residual *from = model->equations.whole ? model->equations.whole->residual
+	const struct residual *from = model->equations.full ? model->equations.full->residual
 							     : model->equations.segment_equations[segment].residual;
 	const struct form **form = ARRAY(const struct form *, (size_t)rows);
 	for (int i = 0; i < rows; i++)
@@ -145,7 +145,7 @@ static struct formulas *collected(const struct emitter *e, int segment, int inde
 
 static int segments_of(const struct emitter *e)
 {
-	return e->model->equations.whole ? 1 : e->system->segments;
+	return e->model->equations.full ? 1 : e->system->segments;
 }
 
 /* if (t < ...) {, } else if ..., } else { */
@@ -177,7 +177,7 @@ static struct read emit_collected_residuals(const struct emitter *e)
 		if (several)
 			emit_segment(e, s);
 		struct reads reads = reads_of_formulas(f);
-		if (e->model->equations.whole)
+		if (e->model->equations.full)
 			emit_nominal_params_read(e, &reads);
 		emit_formulas(f, several ? 8 : 4);
 	}

@@ -108,7 +108,7 @@ static const char **sample_names(const struct emitter *e)
 static bool is_read_before(const struct emitter *e, int column)
 {
 	const struct rows *rows = e->step->rows;
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	bool any = false;
 	for (int k = 0; k < rows->columns; k++) {
 		const struct operand *operand = &rows->column[k].operand;
@@ -213,7 +213,7 @@ static bool leap_column_of(const struct emitter *e, const struct coefficient *fa
 /* Of the state, then of what acts; returns how many */
 static int leap_columns_of(const struct emitter *e, struct leap_column *column)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	const struct coefficient *square = e->step->form == FORM_DELTA ? table->increment : table->Phi;
 	int count = 0, n = table->states;
 	for (int j = 0; j < n; j++)
@@ -229,7 +229,7 @@ static int leap_columns_of(const struct emitter *e, struct leap_column *column)
 
 static struct leap_column *room_for_leap(const struct emitter *e)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	return ARRAY(struct leap_column, (size_t)(table->states + table->columns + table->inputs) + 1);
 }
 
@@ -302,17 +302,17 @@ static void emit_block(const struct emitter *e)
 /* As run.h has it: 1: all at once, else one more than there are parts */
 static int rests_of(const struct emitter *e)
 {
-	const struct rest *rest = e->step->linear.rest;
-	bool apart = rest && rest->parts > 1;
-	for (int i = 0; rest && i < e->system->states; i++)
-		apart = apart || rest->part[i] < 0;
-	return !rest ? 0 : apart ? rest->parts + 1 : 1;
+	const struct denormal_flush *flush = e->step->linear.flush;
+	bool apart = flush && flush->parts > 1;
+	for (int i = 0; flush && i < e->system->states; i++)
+		apart = apart || flush->part[i] < 0;
+	return !flush ? 0 : apart ? flush->parts + 1 : 1;
 }
 
 static void emit_parts_at_rest(const struct emitter *e)
 {
 	say(e, "\n/* Which part each state is of, of those that decay by themselves; -1: of none */\n");
-	emit_integers(e, "short", "part", e->system->states, e->step->linear.rest->part);
+	emit_integers(e, "short", "part", e->system->states, e->step->linear.flush->part);
 }
 
 void emit_run(const struct emitter *e)
@@ -332,7 +332,7 @@ void emit_run(const struct emitter *e)
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
 		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL }, { "RESTS", rests },
-		   { "IN_STEP", rests && e->step->linear.rest->in_step },
+		   { "IN_STEP", rests && e->step->linear.flush->in_step },
 		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#include \"run.h\"\n");
 }

@@ -44,7 +44,7 @@ static void emit_event_limit(const struct emitter *e)
 {
 	int parts = 0;
 	for (int p = 0; p < e->step->regions.parts; p++)
-		parts += e->step->regions.part[p]->model->switching->expressions > 0;
+		parts += e->step->regions.part[p]->model->switching->functions > 0;
 	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step%s */\n",
 	    parts ? parts * MAX_EVENTS : max_events(e->model), parts ? format(", %d of each part", MAX_EVENTS) : "");
 }
@@ -124,15 +124,15 @@ static const struct printers with_remainder = {
 
 static void emit_expansion_constants(const struct emitter *e)
 {
-	if (is_divided(e))
+	if (has_switching(e))
 		emit_event_limit(e);
 }
 
 /* What all have whose state may choose formulas */
 #define OF_SERIES \
 	.constants = emit_expansion_constants, \
-	.types = emit_divided_types, .status_note = "0, or PL_... bits (plrt.h)", \
-	.declare_state = emit_divided_declarations
+	.types = emit_switching_types, .status_note = "0, or PL_... bits (plrt.h)", \
+	.declare_state = emit_switching_declarations
 
 static const struct printers event_split = {
 	.banner = banner_event_split,

@@ -5,7 +5,7 @@
 #include "model/contacts/friction.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/exponential/recipe.h"
 
 struct formulas {
@@ -38,13 +38,13 @@ const char *basis_now(const struct emitter *e, const struct basis *basis)
 	case BASIS_INPUT: return input_name(e, basis->index, basis->order);
 	default: break;
 	}
-	if (is_polynomial(basis->wave)) {
+	if (is_polynomial(basis->forcing)) {
 		for (int k = 1; k < basis->power; k++)
 			text = format("%s * t", text);
 		return text;
 	}
-	l = load_of_wave(e->system, basis->wave);
-	return format("load%d[%d]", l + 1, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
+	l = load_of_forcing(e->system, basis->forcing);
+	return format("load%d[%d]", l + 1, oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power);
 }
 
 /* ---- operands: from forms ---- */
@@ -52,8 +52,8 @@ const char *basis_now(const struct emitter *e, const struct basis *basis)
 static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
 {
 	const struct formulas *f = context;
-	bool written = basis->kind == BASIS_WAVE && f->written;
-	return written ? tape_wave(t, basis) : tape_of_basis(t, f->e->system, basis);
+	bool written = basis->kind == BASIS_FORCING && f->written;
+	return written ? tape_forcing(t, basis) : tape_of_basis(t, f->e->system, basis);
 }
 
 static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)
@@ -75,15 +75,15 @@ static const struct atom *choice_in(const struct form *form)
 static tape_ref above(struct tape_forms *forms, const void *context, const struct form *a, const struct form *b)
 {
 	const struct emitter *e = ((const struct formulas *)context)->e;
-	const struct expansion *x = e->step->taylor.divided;
+	const struct expansion *x = e->step->taylor.switching;
 	const struct atom *chosen = choice_in(b);
 	struct tape *t = tape_of_forms(forms);
 	struct division d;
-	if (x && find_division(x, a, b, &d) && d.expression == NONE)
+	if (x && find_division(x, a, b, &d) && d.function == NONE)
 		return tape_operand(t, d.above ? TAPE_TRUE : TAPE_FALSE, 0, 0);
 	if (x && find_division(x, a, b, &d)) {
-		int rank = upper_rank(x, d.expression, d.breakpoint);
-		tape_ref ref = tape_operand(t, TAPE_ABOVE, d.expression, rank);
+		int rank = upper_rank(x, d.function, d.breakpoint);
+		tape_ref ref = tape_operand(t, TAPE_ABOVE, d.function, rank);
 		return d.above ? ref : tape_unary(t, TAPE_NOT, ref);
 	}
 	if (!chosen)
@@ -117,7 +117,7 @@ static const char *operand(const void *context, const struct tape_node *n)
 	case TAPE_LOAD:     return load_operand(e, n->index, n->part);
 	case TAPE_STATE:    return e->local[n->index];
 	case TAPE_SAMPLE:   return input_operand(e, n->index);
-	case TAPE_ACCUMULATE: return format("s->%s[%d]", n->part == PLACE_CARRY ? "carry" : "rest", n->index);
+	case TAPE_ACCUMULATE: return format("s->%s[%d]", n->part == PLACE_CARRY ? "carry" : "low", n->index);
 	case TAPE_PARAM:    return param_local(e, n->index);
 	case TAPE_TIME:     return n->part ? f->when : "t";
 	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_friction_force"), n->index);
@@ -141,12 +141,12 @@ static const struct tape_let *lets_of(const struct emitter *e, int *count)
 {
 	int most = 0;
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		most += s->kind == SYMBOL_LET && s->made.whole;
+		most += s->kind == SYMBOL_LET && s->made.full;
 	struct tape_let *let = ARRAY(struct tape_let, (size_t)most + 1);
 	*count = 0;
 	for (const struct symbol *s = e->model->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && s->made.whole)
-			let[(*count)++] = (struct tape_let){ c_name(e->c, s, 0), s->made.whole };
+		if (s->kind == SYMBOL_LET && s->made.full)
+			let[(*count)++] = (struct tape_let){ c_name(e->c, s, 0), s->made.full };
 	return let;
 }
 
@@ -189,7 +189,7 @@ static void note_read(struct reads *r, const struct emitter *e, const struct tap
 		r->state[n->part ? model->system.velocity[n->index] : n->index] = true;
 	else if (n->op == TAPE_INPUT)
 		r->input[n->index + n->part * model->system.inputs] = true;
-	else if (n->op == TAPE_LOAD && n->part < 2 && is_polynomial(e->system->load[n->index].wave))
+	else if (n->op == TAPE_LOAD && n->part < 2 && is_polynomial(e->system->load[n->index].forcing))
 		r->time = true;                         /* as load_operand has it */
 	else if (n->op == TAPE_LOAD)
 		r->load[n->index] = true;

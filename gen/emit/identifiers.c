@@ -39,7 +39,8 @@ static bool begins_with(const char *name, const char *prefix)
 /* load2, part3, ...: the locals of generated functions */
 static bool is_load_local(const char *name)
 {
-	static const char *const stem[] = { "wave", "load", "part", "left", "flow", "stage", "driven", "accel", "end",
+	static const char *const stem[] =
+		{ "forcing", "load", "part", "left", "flow", "stage", "driven", "accel", "end",
 					    "from", "to", "off", "before", "lead", "kicked", "drifted" };
 	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
 		size_t length = strlen(stem[i]);

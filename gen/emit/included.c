@@ -165,16 +165,16 @@ static void put_words(const struct including *in, FILE *to, const char *text, in
 
 /* ---- conditions ---- */
 
-struct asked { const struct including *in; const char *at; bool known; };
+struct query { const struct including *in; const char *at; bool known; };
 
-static long value_of(struct asked *v, int level);
+static long value_of(struct query *v, int level);
 
-static void skip_blanks(struct asked *v)
+static void skip_blanks(struct query *v)
 {
 	v->at += strspn(v->at, " ");
 }
 
-static bool takes(struct asked *v, const char *sign)
+static bool takes(struct query *v, const char *sign)
 {
 	skip_blanks(v);
 	if (strncmp(v->at, sign, strlen(sign)) != 0)
@@ -190,7 +190,7 @@ static bool is_ours(const char *name)
 		strcmp(name, "STATE_IS_COMPENSATED") == 0;
 }
 
-static long value_of_name(struct asked *v)
+static long value_of_name(struct query *v)
 {
 	const char *name = slice(v->at, name_length(v->at));
 	v->at += strlen(name);
@@ -208,13 +208,13 @@ static long value_of_name(struct asked *v)
 	v->known = v->known && (m || is_ours(name));
 	if (!m || m->parameters >= 0)
 		return 0;
-	struct asked body = { v->in, m->body, v->known };
+	struct query body = { v->in, m->body, v->known };
 	long value = value_of(&body, 0);
 	v->known = body.known;
 	return value;
 }
 
-static long unit_of(struct asked *v)
+static long unit_of(struct query *v)
 {
 	char *end;
 	if (takes(v, "!"))
@@ -236,7 +236,7 @@ static long unit_of(struct asked *v)
 }
 
 /* Operators of this level and those that bind more closely */
-static long value_of(struct asked *v, int level)
+static long value_of(struct query *v, int level)
 {
 	static const struct { const char *sign; int level; } operators[] = {
 		{ "||", 0 }, { "&&", 1 }, { "==", 2 }, { "!=", 2 }, { "<=", 3 }, { ">=", 3 }, { "<", 3 }, { ">", 3 },
@@ -277,7 +277,7 @@ static bool leaves_some(const struct including *in)
 static void open_condition(struct including *in, const char *word, const char *rest)
 {
 	const char *text = word[2] == 0 ? rest : format("%sdefined %s", word[2] == 'n' ? "!" : "", rest);
-	struct asked v = { in, text, true };
+	struct query v = { in, text, true };
 	bool taken = is_taken(in), holds = value_of(&v, 0) != 0;
 	if (in->conditions == MOST_NESTED)
 		return;
@@ -288,7 +288,7 @@ static void open_condition(struct including *in, const char *word, const char *r
 static void turn(struct including *in, const char *word, const char *rest)
 {
 	struct condition *c = &in->condition[in->conditions - 1];
-	struct asked v = { in, rest, true };
+	struct query v = { in, rest, true };
 	bool holds = !c->held && (word[2] == 's' || value_of(&v, 0) != 0);
 	c->holds = holds;
 	c->held = c->held || holds;

@@ -199,7 +199,7 @@ bool keeps_modes(const struct emitter *e)
 }
 
 /* s->y is not the state as it is known outside: NAME_get makes that */
-static bool is_read_whole(const struct emitter *e)
+static bool is_read_full(const struct emitter *e)
 {
 	return (e->step->forced && !rows_sustained(e->step)) || e->step->modal || keeps_modes(e);
 }
@@ -209,7 +209,7 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 			 bool velocities)
 {
 	const char *list = "";
-	bool forced = velocities && is_read_whole(e);
+	bool forced = velocities && is_read_full(e);
 
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
@@ -225,11 +225,11 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	bool any = false;
 	for (int i = 0; i < e->system->states; i++)
 		any = any || reads[i];
-	bool whole = is_read_whole(e);
-	if (whole && any)
+	bool full = is_read_full(e);
+	if (full && any)
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_%s(s, now);\n", e->model->relative ? "kept" : "get");
-	write_locals(e, reads, "const double", whole ? "now" : "s->y", true);
+	write_locals(e, reads, "const double", full ? "now" : "s->y", true);
 }
 
 void emit_raw_locals(const struct emitter *e, const bool *reads)
@@ -294,9 +294,9 @@ void open_algorithm(const struct emitter *e, const char *algorithm, const struct
 	say(e, "#define PL(name) $n_##name\n"
 	       "#define PL_TYPE $n\n"
 	       "#define PL_H %s\n", step_length(e));
-	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
+	say_macro(e, "SINGLE", integer_text(e->model->request.single));
 	for (; size->name; size++)
-		say_macro(e, size->name, whole_text(size->value));
+		say_macro(e, size->name, integer_text(size->value));
 }
 
 /* ---- tunable params ---- */

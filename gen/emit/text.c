@@ -139,7 +139,7 @@ static void say_row(const struct emitter *e, int count, const double *value, con
 	size_t width = 0;
 	for (int i = 0; i < count; i++) {
 		if (!isfinite(value[i]))
-			error(e->model->asked.step_at, NULL, "a number%s is beyond the range of %s",
+			error(e->model->request.step_at, NULL, "a number%s is beyond the range of %s",
 			      row ? format(" in the row of %s", row) : "", target_name());
 		const char *text = format("%s%s", shortest(value[i]), i + 1 < count ? ", " : "");
 		width += strlen(text);
@@ -236,7 +236,7 @@ void say_vector(const struct emitter *e, const char *name, int count, const char
 	say(e, "};\n");
 }
 
-const char *whole_text(int number)
+const char *integer_text(int number)
 {
 	return format("%d", number);
 }

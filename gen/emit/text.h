@@ -71,7 +71,7 @@ const char *sum_of(const struct summands *s, int indent);         /* as a tree; 
 void say_wrapped(const struct emitter *e, const char *text);      /* a statement, broken where it is long */
 /* const double name[count] = {...}; NULL: 1 */
 void say_vector(const struct emitter *e, const char *name, int count, const char *const *text);
-const char *whole_text(int number);
+const char *integer_text(int number);
 /* Lines of a comment that stands open, broken between words */
 void say_words(const struct emitter *e, const char *text);
 /* A comment, broken where it is long; no word of it is longer than a line */

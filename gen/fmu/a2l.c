@@ -145,7 +145,7 @@ static void print_groups(const struct a2l *a)
 
 void print_a2l(FILE *to, const struct step *step)
 {
-	struct a2l a = { to, step->model->name, step->model->asked.single, variables_of(step), NULL, 0 };
+	struct a2l a = { to, step->model->name, step->model->request.single, variables_of(step), NULL, 0 };
 	fprintf(to,
 		"ASAP2_VERSION 1 61\n/* %s: made by plgen " PLGEN_VERSION ". The arrays are the program's own:\n"
 		" * NAME_get(&s, %s_states), NAME_out(&s, %s_outputs), NAME_retune(&c, %s_params, h). */\n"

@@ -95,7 +95,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	if (!can_have_inputs(model))
 		return NULL;
 	f->version = version;
-	f->single = model->asked.single;
+	f->single = model->request.single;
 	f->name = model->name;
 	f->title = model->spec->name;
 	f->h = nearest_double(model->h);

@@ -241,7 +241,7 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
 void series_room_free(struct series_room *room);
 
-/* ---- positive.c: where a sum of waves of time stays at 0 or above ---- */
+/* ---- positive.c: where a sum of forcing terms of time stays at 0 or above ---- */
 
 struct summand { mpq_srcptr factor, a, w, p; int power; bool sine; };   /* factor t^power e^{a t} cos or sin(w t + p) */
 /* From `from`, at least 0, to `to`; NULL: for good. False: it does not, or that is not seen. What is below 0 by less

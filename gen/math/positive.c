@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a sum of powers, exponentials and waves of time stays at 0 or above: by bisection with the ranges of its
- * value and its slope, and to no end by what its parts are at least. */
+/* Whether a sum of powers, exponentials and forcing terms of time stays at 0 or above: by bisection with the ranges of
+ * its value and its slope, and to no end by what its parts are at least. */
 #include "math/math.h"
 
 enum {
@@ -14,7 +14,7 @@ struct bounding {
 	int summands;
 	const struct summand *summand;
 	int nodes;
-	mpfi_ptr value, slope, at, power, lower, wave, turn, part;
+	mpfi_ptr value, slope, at, power, lower, forcing, turn, part;
 	mpfr_ptr tiny;              /* below 0 */
 };
 
@@ -43,23 +43,23 @@ static void add_summand(struct bounding *b, const struct summand *s)
 	mpfi_mul_ui(b->lower, b->lower, (unsigned long)s->power);       /* n t^(n-1) */
 	mpfi_mul_q(b->part, b->at, s->w);
 	mpfi_add_q(b->part, b->part, s->p);
-	(s->sine ? mpfi_sin : mpfi_cos)(b->wave, b->part);
+	(s->sine ? mpfi_sin : mpfi_cos)(b->forcing, b->part);
 	(s->sine ? mpfi_cos : mpfi_sin)(b->turn, b->part);
 	mpfi_mul_q(b->turn, b->turn, s->w);
 	if (!s->sine)
 		mpfi_neg(b->turn, b->turn);
-	mpfi_mul_q(b->part, b->wave, s->a);
-	mpfi_add(b->turn, b->turn, b->part);            /* d/dt e^{a t} wave = e^{a t} turn */
+	mpfi_mul_q(b->part, b->forcing, s->a);
+	mpfi_add(b->turn, b->turn, b->part);            /* d/dt e^{a t} forcing term = e^{a t} turn */
 	mpfi_mul(b->turn, b->turn, b->power);
-	mpfi_mul(b->lower, b->lower, b->wave);
+	mpfi_mul(b->lower, b->lower, b->forcing);
 	mpfi_add(b->turn, b->turn, b->lower);
-	mpfi_mul(b->wave, b->wave, b->power);
+	mpfi_mul(b->forcing, b->forcing, b->power);
 	mpfi_mul_q(b->part, b->at, s->a);
 	mpfi_exp(b->part, b->part);
 	mpfi_mul_q(b->part, b->part, s->factor);
-	mpfi_mul(b->wave, b->wave, b->part);
+	mpfi_mul(b->forcing, b->forcing, b->part);
 	mpfi_mul(b->turn, b->turn, b->part);
-	mpfi_add(b->value, b->value, b->wave);
+	mpfi_add(b->value, b->value, b->forcing);
 	mpfi_add(b->slope, b->slope, b->turn);
 }
 

@@ -83,7 +83,7 @@ static void evaluate_all_absolute(void *context)
 {
 	struct building *b = context;
 	mpq_t *absolute = b->model->truncation.absolute;
-	evaluate_absolute(b, b->spec->asked.absolute, absolute[0]);
+	evaluate_absolute(b, b->spec->request.absolute, absolute[0]);
 	for (int i = 1; i < b->model->system.states; i++)
 		mpq_set(absolute[i], absolute[0]);
 }
@@ -103,16 +103,16 @@ static void relative_absolutes(struct model *model)
 void evaluate_absolutes(struct building *b)
 {
 	struct model *model = b->model;
-	if (!b->spec->asked.absolute && b->spec->asked.absolutes == 0)
+	if (!b->spec->request.absolute && b->spec->request.absolutes == 0)
 		return;
 	model->truncation.absolute = rationals(model->system.states);
 	if (model->relative) {
 		relative_absolutes(model);
 		return;
 	}
-	if (b->spec->asked.absolute)
+	if (b->spec->request.absolute)
 		statement_guard(evaluate_all_absolute, b);
-	evaluate_bounds(b, b->spec->asked.absolutes, b->spec->asked.absolute_of, take_absolute);
+	evaluate_bounds(b, b->spec->request.absolutes, b->spec->request.absolute_of, take_absolute);
 }
 
 void evaluate_ranges(struct building *b)

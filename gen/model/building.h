@@ -6,7 +6,7 @@
 #include "collect/collect.h"
 #include "model.h"
 
-struct expression;
+struct switching_function;
 struct impact_law;
 
 /* ---- the builders of a model share ---- */
@@ -20,9 +20,9 @@ struct building {                   /* what the builders share */
 	struct model *model;
 	struct collector collector;
 	const struct request *request;
-	const struct wave *polynomial; /* the wave of t^k alone */
+	const struct forcing *polynomial; /* the forcing term of t^k alone */
 	struct segment_equations *segment_equations; /* per interval between changes of formula in time */
-	struct segment_equations *whole; /* the same for all time, with atoms; NULL: there is no remainder */
+	struct segment_equations *full; /* the same for all time, with atoms; NULL: there is no remainder */
 	/* with the spec's values, where `segment_equations` has tunable params; else NULL */
 	struct segment_equations *nominal;
 	int nominals;               /* its intervals */
@@ -36,7 +36,7 @@ struct building {                   /* what the builders share */
 struct segment_equations {          /* the equations and outputs in one interval of time */
 	int residuals, written;     /* all; those of written equations come first */
 	struct residual *residual;
-	struct form **element;      /* per element of the sketch: its force */
+	struct form **element;      /* per element of the network: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
 	struct impact_law **impact_law; /* per `when` and stop; NULL: it has been told */
 };
@@ -49,13 +49,13 @@ void collect_outputs(struct building *b, struct segment_equations *segment_equat
 int  find_order(const struct spec *spec, int coord);
 void build_outputs(struct building *b);
 /* of states, loads and inputs; no highest derivatives */
-struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e);
+struct output *row_of_function(struct building *b, const struct switching *of, const struct switching_function *e);
 struct output *row_of_form(struct building *b, struct form *form);
 /* the same with the highest derivatives that a system gives */
 struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
-void collect_whole(struct building *b);                     /* the equations for all time, atoms kept: b->whole */
+void collect_full(struct building *b);                      /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
-void add_elements(struct building *b, struct segment_equations *s); /* the sketch's forces to the residuals */
+void add_elements(struct building *b, struct segment_equations *s); /* the network's forces to the residuals */
 void check_mass(const struct building *b);
 
 /* ---- delays.c: inputs as they were some time ago ---- */

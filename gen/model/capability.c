@@ -116,12 +116,12 @@ struct facts facts_of_model(const struct model *model)
 
 /* ---- what stands against it ---- */
 
-struct objection objection_to(enum capability asked, const struct facts *f, const struct model *model)
+struct objection objection_to(enum capability requested, const struct facts *f, const struct model *model)
 {
 	struct objection o = { NULL, NULL };
 	bool now = false;
 #define AGAINST(name, when, ...) \
-	now = !o.why && asked == CAN_##name && (when); \
+	now = !o.why && requested == CAN_##name && (when); \
 	if (now) \
 		o.why = format(__VA_ARGS__);
 #define WAY_OUT(words) \
@@ -131,19 +131,19 @@ struct objection objection_to(enum capability asked, const struct facts *f, cons
 	return o;
 }
 
-const char *words_before(enum capability asked)
+const char *words_before(enum capability requested)
 {
 	static const char *const words[CAPABILITIES] = {
 #define ASKED(name, words) [CAN_##name] = words,
 #include "model/capability.def"
 	};
-	return words[asked];
+	return words[requested];
 }
 
-void refuse(enum capability asked, const struct model *model, struct place at)
+void refuse(enum capability requested, const struct model *model, struct place at)
 {
 	const struct facts facts = facts_of_model(model);
-	const struct objection o = objection_to(asked, &facts, model);
+	const struct objection o = objection_to(requested, &facts, model);
 	if (o.why)
-		error(at, o.way, "%s%s", words_before(asked), o.why);
+		error(at, o.way, "%s%s", words_before(requested), o.why);
 }

@@ -44,9 +44,10 @@ struct facts facts_of_model(const struct model *model);      /* as far as it is 
 
 struct objection { const char *why, *way; };                 /* the reason; a hint, or NULL */
 /* What stands against it; why is NULL where nothing does */
-struct objection objection_to(enum capability asked, const struct facts *f, const struct model *model);
-void refuse(enum capability asked, const struct model *model, struct place at); /* leaves the statement where it does */
-const char *words_before(enum capability asked);                 /* before a reason */
+struct objection objection_to(enum capability requested, const struct facts *f, const struct model *model);
+/* leaves the statement where it does */
+void refuse(enum capability requested, const struct model *model, struct place at);
+const char *words_before(enum capability requested);             /* before a reason */
 
 bool steps_exactly(const struct model *model);               /* by scheme exact, or by one that nothing is left to */
 bool is_measured(const struct model *model);                 /* no bound is known: it is not linear, or in pieces */

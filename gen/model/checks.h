@@ -24,7 +24,7 @@ int  whole_number(struct building *b, struct node *node, int low, int high, cons
 /* from its tolerance, which is the default where it is 0; of what is no series, none */
 void choose_order(struct model *model, bool single);
 /* An argument of the command line, then *at is where it stands; else what the spec has */
-struct node *asked_or_written(struct building *b, const char *asked, struct node *written, struct place *at);
+struct node *requested_or_written(struct building *b, const char *asked, struct node *written, struct place *at);
 
 /* ---- jacobian.c: of the equations for all time, where states and time are fixed ---- */
 
@@ -62,7 +62,7 @@ void warn(struct building *b);
 
 struct target {                     /* a processor: what it takes of instructions */
 	const char *name;
-	struct { double multiplication, addition, wave, step; } cost[2]; /* in double, in float */
+	struct { double multiplication, addition, forcing, step; } cost[2]; /* in double, in float */
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);

@@ -29,7 +29,8 @@ static void evaluate_delay(struct building *b, const struct symbol *s, mpq_ptr d
 	own.params = PARAMS_VALUES;
 	struct value *value = collect(&own, s->when);
 	mpq_srcptr zero = rationals(1)[0];
-	const struct basis time = { .kind = BASIS_WAVE, .wave = wave_of(&b->collector, zero, zero, zero), .power = 1 };
+	const struct basis time =
+		{ .kind = BASIS_FORCING, .forcing = forcing_of(&b->collector, zero, zero, zero), .power = 1 };
 	const struct form *rest = NULL;
 	if (value->rows == 1 && value->columns == 1)
 		rest = form_difference(form_unit(time), value->cell[0]);
@@ -87,11 +88,11 @@ static void find_parts(struct delays *delays, const mpq_t *d)
 static void check_request(const struct building *b, const struct symbol *s)
 {
 	const struct facts facts = { .delays = true };
-	const bool asked[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution,
+	const bool requested[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution,
 					   [CAN_SELFTEST] = b->request->selftest,
 					   [CAN_NEED] = b->spec->required.needs > 0 };
 	for (int k = 0; k < CAPABILITIES; k++)
-		if (asked[k])
+		if (requested[k])
 			error(s->at, NULL, "%s%s", words_before(k), objection_to(k, &facts, b->model).why);
 	if (mpq_sgn(b->model->h) == 0)
 		error(s->at, NULL, "a delayed input needs a step that is given");

@@ -174,7 +174,7 @@ static bool is_sketched(const struct building *b, int coord)
 }
 
 /* A written equation can be the coordinate's own if it has its highest derivative or, at last, if a mass statement
- * gives that. Coordinates that no sketch touches have only written ones and choose first. */
+ * gives that. Coordinates that no network touches have only written ones and choose first. */
 enum choice { UNTOUCHED, HIGHEST, ANY };
 
 static bool can_own(const struct building *b, int row, int coord, enum choice choice)
@@ -215,7 +215,7 @@ static const char *missing_name(const struct building *b, int coord)
 						    : format("%s''", b->model->names.coord[coord]);
 }
 
-/* Of a part, or of the scene's own: counted and told where its text ends */
+/* Of a part, or of the assembly's own: counted and told where its text ends */
 static void report_missing(const struct building *b, int missing, int all)
 {
 	const struct symbol *symbol = b->model->frame.coord[missing];
@@ -226,7 +226,7 @@ static void report_missing(const struct building *b, int missing, int all)
 			coords++;
 			owned += b->owner[j] >= 0;
 		}
-	if (b->spec->scene.parts == 0) {
+	if (b->spec->assembly.parts == 0) {
 		coords = n;
 		owned = all;
 	}
@@ -348,20 +348,20 @@ void check_mass(const struct building *b)
 }
 
 /* The equations for all time, in which nothing is taken apart that a state multiplies. */
-void collect_whole(struct building *b)
+void collect_full(struct building *b)
 {
 	int keep = (int)b->collector.keep;
 	b->collector.keep = KEEP_ALL;
-	b->whole = NEW(struct segment_equations);
+	b->full = NEW(struct segment_equations);
 	b->collector.whole_time = true;
 	forget_lets(b->spec);
-	collect_equations(b, b->whole);
+	collect_equations(b, b->full);
 	b->collector.whole_time = false;
 	b->collector.keep = (unsigned)keep;
 	if (!diagnostics_errors())
-		add_elements(b, b->whole);
+		add_elements(b, b->full);
 	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
 		if (s->kind == SYMBOL_LET && s->made.progress == COLLECTED &&
 		    s->made.value->rows * s->made.value->columns == 1)
-			s->made.whole = s->made.value->cell[0];
+			s->made.full = s->made.value->cell[0];
 }

@@ -229,13 +229,13 @@ static void round_decimal(mpq_ptr value)
 	const double size = fabs(mpq_get_d(value));
 	const int places = size < 1e-30 ? 0 : DIGITS - 1 - (int)floor(log10(size));
 	RATIONAL power = ZERO, half = ZERO;
-	INTEGER whole = INTEGER_ZERO;
+	INTEGER full = INTEGER_ZERO;
 	mpz_ui_pow_ui(mpq_numref(power), 10, (unsigned long)abs(places));
 	mpq_set_ui(half, 1, 2);
 	(places < 0 ? mpq_div : mpq_mul)(value, value, power);
 	mpq_add(value, value, half);
-	mpz_fdiv_q(whole, mpq_numref(value), mpq_denref(value));
-	mpq_set_z(value, whole);
+	mpz_fdiv_q(full, mpq_numref(value), mpq_denref(value));
+	mpq_set_z(value, full);
 	(places < 0 ? mpq_mul : mpq_div)(value, value, power);
 }
 

@@ -11,7 +11,7 @@ static struct form **columns(struct building *b, int coord, int order)
 {
 	const struct form **row = ARRAY(const struct form *, b->model->n);
 	for (int i = 0; i < b->model->n; i++)
-		row[i] = b->whole->residual[i].form;
+		row[i] = b->full->residual[i].form;
 	return form_derivatives(&b->collector, b->model->n, row, false, coord, order);
 }
 

@@ -11,7 +11,7 @@
 #include "checks.h"
 #include "linearise.h"
 #include "reads.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
 #include <stdlib.h>
@@ -162,15 +162,15 @@ static void print_declarations(FILE *to, const struct linearising *l)
 /* f t^k e^{a t} cos(w t + p), which stands on the left side with the other sign */
 static void print_load(FILE *to, const struct form_term *term, bool *begun)
 {
-	const struct wave *wave = term->basis.wave;
+	const struct forcing *forcing = term->basis.forcing;
 	const char *name = term->basis.power ? format("t^%d", term->basis.power) : "";
 	RATIONAL factor = ZERO;
-	if (mpq_sgn(wave->a) != 0)
-		name = format("%s%sexp(%s*t)", name, *name ? "*" : "", factor_text(wave->a));
-	if (oscillates(wave))
+	if (mpq_sgn(forcing->a) != 0)
+		name = format("%s%sexp(%s*t)", name, *name ? "*" : "", factor_text(forcing->a));
+	if (oscillates(forcing))
 		name = format("%s%s%s(%s*t%s)", name, *name ? "*" : "", term->basis.sine ? "sin" : "cos",
-			      factor_text(wave->w),
-			      mpq_sgn(wave->p) == 0 ? "" : format(" + %s", factor_text(wave->p)));
+			      factor_text(forcing->w),
+			      mpq_sgn(forcing->p) == 0 ? "" : format(" + %s", factor_text(forcing->p)));
 	mpq_neg(factor, term->factor);
 	print_term(to, factor, name, 0, begun);
 }
@@ -178,7 +178,7 @@ static void print_load(FILE *to, const struct form_term *term, bool *begun)
 static void print_loads(FILE *to, const struct form *form, bool *begun)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_WAVE)
+		if (form->term[i].basis.kind == BASIS_FORCING)
 			print_load(to, &form->term[i], begun);
 }
 
@@ -236,7 +236,7 @@ static void print_equations(FILE *to, struct linearising *l)
 {
 	const struct form **form = ARRAY(const struct form *, l->n);
 	for (int i = 0; i < l->n; i++)
-		form[i] = l->b->whole->residual[i].form;
+		form[i] = l->b->full->residual[i].form;
 	mpq_t **slope = all_slopes(l, l->n, form);
 	for (int i = 0; i < l->n; i++) {
 		bool left = false, right = false;
@@ -316,7 +316,7 @@ static const struct form *without_loads(const struct form *form)
 {
 	struct form *kept = NEW(struct form);
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind != BASIS_WAVE)
+		if (form->term[i].basis.kind != BASIS_FORCING)
 			form_add_basis(kept, form->term[i].basis, form->term[i].factor);
 	return kept;
 }
@@ -340,7 +340,8 @@ static int segment_at(const struct linearising *l)
 }
 
 /* 0 < x - y < 0.1: between which of its breakpoints it is there; *interval counts them from below */
-static const char *side_text(struct linearising *l, const struct expression *e, struct point *point, int *interval)
+static const char *side_text(struct linearising *l, const struct switching_function *e, struct point *point,
+			     int *interval)
 {
 	const struct form *form = form_in(e, e->segments > 1 ? segment_at(l) : 0);
 	RATIONAL value = ZERO;
@@ -359,17 +360,17 @@ static const char *region_text(struct linearising *l)
 	const struct switching *s = l->b->model->switching;
 	const char *list = "";
 	int region = 0, interval;
-	if (!s || s->expressions == 0)
+	if (!s || s->functions == 0)
 		return "";
 	struct point *point = point_of(l);
-	for (int i = 0; i < s->expressions; i++) {
-		const char *side = side_text(l, &s->expression[i], point, &interval);
-		region += interval * s->expression[i].stride;
+	for (int i = 0; i < s->functions; i++) {
+		const char *side = side_text(l, &s->function[i], point, &interval);
+		region += interval * s->function[i].stride;
 		if (i < NAMED)
 			list = format("%s%s%s", list, i ? ", " : "", side);
 	}
-	if (s->expressions > NAMED)
-		list = format("%s and %d more inequalities", list, s->expressions - NAMED);
+	if (s->functions > NAMED)
+		list = format("%s and %d more inequalities", list, s->functions - NAMED);
 	return format("; in region %d, where %s", region, list);
 }
 
@@ -382,7 +383,7 @@ static const char *loads_text(struct linearising *l)
 	struct form *all = NEW(struct form), *one;
 	for (int i = 0; i < l->n; i++)
 		for (int k = 0; k < l->residual[i]->terms; k++)
-			if (l->residual[i]->term[k].basis.kind == BASIS_WAVE &&
+			if (l->residual[i]->term[k].basis.kind == BASIS_FORCING &&
 			    !form_find(all, &l->residual[i]->term[k].basis))
 				all = form_sum(all, form_unit(l->residual[i]->term[k].basis), false);
 	for (int k = 0; k < all->terms && k < NAMED; k++) {
@@ -443,7 +444,7 @@ static bool find_point(struct linearising *l)
 		mpq_set(l->state[i], model->initial[i]);
 	const int given = l->rest ? 0 : take_values(l, place);
 	for (int i = 0; i < l->n; i++) {
-		const struct form *form = l->b->whole->residual[i].form;
+		const struct form *form = l->b->full->residual[i].form;
 		l->residual[i] = l->timed ? form : without_loads(form);
 	}
 	if (l->timed && given == 1) {
@@ -478,8 +479,8 @@ void linearise(void *building)
 	char *text;
 	check_contacts(b);
 	list_inputs(&l);
-	if (!b->whole)
-		collect_whole(b);
+	if (!b->full)
+		collect_full(b);
 	if (diagnostics_errors())
 		abandon();
 	list_fixings(&l);

@@ -26,7 +26,7 @@ struct lint {
 	const struct linear *system;
 	int poles;                  /* as many as states; 0: they are not known */
 	double *re, *im, size;
-	struct place negative;      /* of a sketch, its first value below 0; source NULL: there is none */
+	struct place negative;      /* of a network, its first value below 0; source NULL: there is none */
 };
 
 /* ---- names that nothing reads ---- */
@@ -253,12 +253,12 @@ static void check_step(const struct lint *lint)
 			what = "of the model";
 		}
 	for (int l = 0; l < s->loads; l++)
-		if (load_acts(s, &s->load[l]) && nearest_double(s->load[l].wave->w) > fastest) {
-			fastest = nearest_double(s->load[l].wave->w);
+		if (load_acts(s, &s->load[l]) && nearest_double(s->load[l].forcing->w) > fastest) {
+			fastest = nearest_double(s->load[l].forcing->w);
 			what = "of a load";
 		}
 	if (fastest * h > PI)
-		say_warning(model->asked.step_at, format("a step below %.3g s", PI / fastest),
+		say_warning(model->request.step_at, format("a step below %.3g s", PI / fastest),
 			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower "
 			    "motion",
 			    what, 2 * PI / fastest);
@@ -310,7 +310,7 @@ static struct place place_of_load(const struct lint *lint, const struct load *lo
 	const struct linear *s = lint->system;
 	int row = 0, oscillate = 0, left = MOST_NODES;
 	for (int l = 0; l < s->loads; l++)
-		oscillate += mpq_sgn(s->load[l].wave->w) != 0;
+		oscillate += mpq_sgn(s->load[l].forcing->w) != 0;
 	for (int i = s->n - 1; i >= 0; i--)
 		for (int c = 0; c < load->columns; c++)
 			for (int k = 0; k < s->segments; k++)
@@ -329,8 +329,8 @@ static void check_resonance(const struct lint *lint)
 	const struct linear *s = lint->system;
 	for (int l = 0; l < s->loads; l++) {
 		const struct load *load = &s->load[l];
-		double w = nearest_double(load->wave->w);
-		if (w <= 0 || mpq_sgn(load->wave->a) != 0 || !load_acts(s, load))
+		double w = nearest_double(load->forcing->w);
+		if (w <= 0 || mpq_sgn(load->forcing->a) != 0 || !load_acts(s, load))
 			continue;
 		for (int i = 0; i < lint->poles; i++) {
 			double own = hypot(lint->re[i], lint->im[i]);
@@ -465,7 +465,7 @@ static int unopposed_row(int n, int width, mpq_t *A)
 	return -1;
 }
 
-/* Only then may something move as a whole. */
+/* Only then may there be a rigid-body mode. */
 static bool may_have_zero(const struct lint *lint)
 {
 	for (int i = 0; i < lint->poles; i++)
@@ -490,14 +490,14 @@ static void check_drift(const struct lint *lint)
 			mpq_set(A[i * width + n + j], s->C[i * n + j]);
 		}
 		for (int l = 0; l < s->loads; l++)
-			if (is_polynomial(s->load[l].wave))
+			if (is_polynomial(s->load[l].forcing))
 				mpq_add(A[i * width + 2 * n], A[i * width + 2 * n],
 					s->load[l].force[0][(s->segments - 1) * n + i]);
 	}
 	int row = unopposed_row(n, width, A);
 	if (row >= 0)
 		say_warning(model->equations.residual[row].at, NULL,
-			    "a constant load drives %s off: neither stiffness nor damping holds what moves as a whole "
+			    "a constant load drives %s off: neither stiffness nor damping holds the rigid-body mode "
 			    "there",
 			    model->names.coord[coordinate_of_row(model, row)]);
 }

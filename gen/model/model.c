@@ -107,24 +107,25 @@ static void evaluate_lets(struct building *b)
 static void choose_scheme(void *context)
 {
 	struct building *b = context;
-	const char *asked = b->request->scheme, *blank = asked ? strchr(asked, ' ') : NULL;
-	const char *wanted = blank   ? format("%.*s", (int)(blank - asked), asked)
-			     : asked ? asked
-				     : b->spec->asked.scheme;
+	const char *requested = b->request->scheme, *blank = requested ? strchr(requested, ' ') : NULL;
+	const char *wanted = blank   ? format("%.*s", (int)(blank - requested), requested)
+			     : requested ? requested
+				     : b->spec->request.scheme;
 	b->collector.scheme = "exact";
 	b->collector.closed = b->request->solution;
 	b->collector.keep = wanted || b->request->solution ? KEEP_PIECEWISE : KEEP_ALL;
 	if (!wanted)
 		return;
-	struct place at = asked ? (struct place){ source_argument(asked), 0 } : b->spec->asked.scheme_at;
-	struct node *order = asked ? NULL : b->spec->asked.order, *over = asked ? NULL : b->spec->asked.over;
+	struct place at = requested ? (struct place){ source_argument(requested), 0 } : b->spec->request.scheme_at;
+	struct node *order = requested ? NULL : b->spec->request.order,
+		*over = requested ? NULL : b->spec->request.over;
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
-		b->model->asked.scheme_at = at;
-		b->model->asked.scheme_order =
-			blank ? parse_scheme_order(b->spec, at.source, (size_t)(blank - asked), &over) : order;
-		b->model->asked.scheme_over = over;
+		b->model->request.scheme_at = at;
+		b->model->request.scheme_order =
+			blank ? parse_scheme_order(b->spec, at.source, (size_t)(blank - requested), &over) : order;
+		b->model->request.scheme_over = over;
 		b->collector.scheme = scheme_name(b->model->scheme);
 		b->collector.keep = b->model->scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
 		return;
@@ -138,9 +139,9 @@ static void choose_scheme(void *context)
 static void evaluate_step(void *context)
 {
 	struct building *b = context;
-	struct place at = b->spec->asked.step_at;
-	struct node *node = asked_or_written(b, b->request->step, b->spec->asked.step, &at);
-	b->model->asked.step_at = b->model->asked.end_at = at;
+	struct place at = b->spec->request.step_at;
+	struct node *node = requested_or_written(b, b->request->step, b->spec->request.step, &at);
+	b->model->request.step_at = b->model->request.end_at = at;
 	if (b->request->step)
 		check_time(node);
 	collect_constant(&b->collector, node, b->model->h);
@@ -286,7 +287,7 @@ static void check_parts(const struct building *b)
 	const struct spec *spec = b->spec;
 	if (spec->count.coords == 0)
 		say_error(spec->end, "coord x", "missing coordinates: there is no statement 'coord'");
-	if (!spec->asked.step && !b->request->step)
+	if (!spec->request.step && !b->request->step)
 		say_error(spec->end, "step 0.01, or --step 0.01 on the command line", "missing step");
 	if (b->model->system.states > LIMIT_STATES)
 		say_error(b->model->frame.coord[b->model->n - 1]->at, NULL, "more states than the limit of %d",
@@ -426,7 +427,7 @@ static void begin_model(struct building *b)
 	const struct request *request = b->request;
 	mpq_srcptr zero = rationals(1)[0];
 	model->spec = b->spec;
-	model->asked = *request;
+	model->request = *request;
 	model->written = request->again.relative ? request->again.relative->written : model;
 	model->relative = request->again.relative;
 	model->frame.form = model->relative ? model->relative->form : NULL;
@@ -436,13 +437,13 @@ static void begin_model(struct building *b)
 	model->equations.atoms = b->collector.atoms = atoms_new();
 	model->params.leads.params = b->spec->tunables;
 	b->collector.leads = &model->params.leads;
-	model->asked.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
-	model->asked.compensated_at = (struct place){ source_argument("compensated"), 0 };
+	model->request.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
+	model->request.compensated_at = (struct place){ source_argument("compensated"), 0 };
 	model->name = request->prefix ? request->prefix : b->spec->name;
 	mpq_init(model->h);
 	for (struct symbol *s = b->spec->first; s; s = s->next)
-		s->made.whole = NULL;
-	b->polynomial = wave_of(&b->collector, zero, zero, zero);
+		s->made.full = NULL;
+	b->polynomial = forcing_of(&b->collector, zero, zero, zero);
 }
 
 /* The statement `modes`, or --modes in its place */
@@ -499,7 +500,7 @@ static void collect_model(struct building *b)
 	if (all && !model->relative)
 		evaluate_ranges(b);
 	evaluate_param_ranges(b);
-	if (all && (b->spec->asked.step || request->step))
+	if (all && (b->spec->request.step || request->step))
 		statement_guard(evaluate_step, b);
 	b->collector.constant_only = false;
 	find_delays(b);
@@ -511,10 +512,10 @@ static void check_reduction(const struct building *b)
 	struct model *model = b->model;
 	const struct facts facts = facts_of_model(model);
 	const char *why = objection_to(CAN_REDUCTION, &facts, model).why;
-	if (!model->asked.reduce || !why)
+	if (!model->request.reduce || !why)
 		return;
 	stand_aside(b->spec->name_at, "--reduce", why);
-	model->asked.reduce = false;
+	model->request.reduce = false;
 }
 
 /* Forms to matrices, operators, outputs, regions */
@@ -600,5 +601,5 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 	collect_constant(&collector, node, value);
 	if (mpq_sgn(value) < 0)
 		error(at, NULL, "--solution takes a time that is not below 0");
-	model->asked.end_at = at;
+	model->request.end_at = at;
 }

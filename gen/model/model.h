@@ -44,7 +44,7 @@ struct model_params {               /* tunable ones: gen/model/tunable */
 };
 struct model {
 	struct spec *spec;
-	struct request asked;
+	struct request request;
 	const char *name;           /* prefix of everything generated */
 	int n;                      /* coordinates */
 	struct model_names names;

@@ -202,9 +202,9 @@ static void collect_left(void *context)
 	c->keep = (unsigned)keep;
 	c->whole_time = c->output = c->reading = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_LET && !s->made.whole && s->made.progress == COLLECTED &&
+		if (s->kind == SYMBOL_LET && !s->made.full && s->made.progress == COLLECTED &&
 		    s->made.value->rows * s->made.value->columns == 1)
-			s->made.whole = s->made.value->cell[0];
+			s->made.full = s->made.value->cell[0];
 }
 
 /* The friction of what has no mass is what it bears: then it may be a row after all. */
@@ -297,7 +297,7 @@ static void add_states_and_inputs(const struct building *b, const struct form *f
 	}
 }
 
-struct output *row_of_expression(struct building *b, const struct switching *of, const struct expression *e)
+struct output *row_of_function(struct building *b, const struct switching *of, const struct switching_function *e)
 {
 	struct output *row = NEW(struct output);
 	int segments = b->model->system.segments;
@@ -349,10 +349,10 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 
 /* ---- outputs that are not linear ---- */
 
-static void place_output_waves(struct building *b, bool *seen, const struct form *form)
+static void place_output_forcings(struct building *b, bool *seen, const struct form *form)
 {
 	for (const struct form_term **term = terms_within(form, seen); *term; term++)
-		if ((*term)->basis.kind == BASIS_WAVE && !is_polynomial((*term)->basis.wave))
+		if ((*term)->basis.kind == BASIS_FORCING && !is_polynomial((*term)->basis.forcing))
 			place_loads(b, form_single((*term)->basis, (*term)->factor));
 }
 
@@ -368,7 +368,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 		for (int k = 0; k < model->n; k++) {
 			if (!reads.highest[k] || model->equations.highest[k])
 				continue;
-			if (model->asked.reduce)
+			if (model->request.reduce)
 				say_error(find_acceleration(model->output[i].value, 0)->at, "without --reduce it can",
 					  "an output that is not linear cannot read an acceleration under --reduce");
 			model->equations.highest[k] = NEW(struct output);
@@ -404,7 +404,8 @@ void build_outputs(struct building *b)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
 	for (int i = 0; i < model->outputs; i++)
-		place_output_waves(b, ARRAY(bool, (size_t)atoms_count(model->equations.atoms)), model->output[i].left);
+		place_output_forcings(b, ARRAY(bool, (size_t)atoms_count(model->equations.atoms)),
+				      model->output[i].left);
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
 		if (output->statement != reported && !check_output(model, output))

@@ -30,10 +30,10 @@ static void look_at_form(struct reads *reading, const struct model *model, bool 
 			reading->state[basis->order ? model->system.velocity[basis->index] : basis->index] = true;
 		else if (basis->kind == BASIS_INPUT)
 			reading->input[basis->index + basis->order * model->system.inputs] = true;
-		else if (basis->kind == BASIS_WAVE && is_polynomial(basis->wave))
+		else if (basis->kind == BASIS_FORCING && is_polynomial(basis->forcing))
 			reading->time = true;
-		for (int l = 0; basis->kind == BASIS_WAVE && l < model->system.loads; l++)
-			if (model->system.load[l].wave == basis->wave && !is_polynomial(basis->wave)) {
+		for (int l = 0; basis->kind == BASIS_FORCING && l < model->system.loads; l++)
+			if (model->system.load[l].forcing == basis->forcing && !is_polynomial(basis->forcing)) {
 				reading->load[l] = true;
 				/* its load states up to the highest power */
 				reading->time = reading->time || model->system.load[l].powers > 1;

@@ -54,9 +54,9 @@ struct request {                    /* what the user asks for on the command lin
 };
 
 /* Whether NAME_run is to go by blocks of rows */
-static inline bool wants_rows(const struct request *asked)
+static inline bool wants_rows(const struct request *requested)
 {
-	return asked->rows ? asked->rows > 1 : asked->fast;
+	return requested->rows ? requested->rows > 1 : requested->fast;
 }
 
 struct truncation {                 /* of a Taylor series */

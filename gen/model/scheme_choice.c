@@ -110,7 +110,7 @@ bool leaves_over(const struct building *b)
 	const struct demands demands = demands_of(b);
 	if (b->request->solution)
 		return false;
-	if (!b->model->asked.scheme_at.source)
+	if (!b->model->request.scheme_at.source)
 		return !demands.piecewise;
 	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
 	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->operators.given);
@@ -168,9 +168,9 @@ bool is_linear(const struct building *b)
 }
 
 /* In one interval, loads with the spec's values of params; what is more by other values is left over. */
-static void part_nominal_loads(struct building *b, int row, const struct form *whole)
+static void part_nominal_loads(struct building *b, int row, const struct form *full)
 {
-	const struct form *here = form_at(point_new(&b->collector, 0, NULL), whole), *known = nominal_form(b, here);
+	const struct form *here = form_at(point_new(&b->collector, 0, NULL), full), *known = nominal_form(b, here);
 	b->load[row] = form_sum(known, time_part(known, true), true);
 	b->time_left[row] = form_sum(here, b->load[row], true);
 }
@@ -187,29 +187,29 @@ static void part_loads(void *context)
 	b->time_left = ARRAY(struct form *, n);
 	struct point *point = point_new(c, 0, NULL);
 	for (int i = 0; i < n; i++) {
-		const struct form *whole = time_part(b->whole->residual[i].form, false);
+		const struct form *full = time_part(b->full->residual[i].form, false);
 		bool same = true;
 		if (parts_params(b)) {
-			part_nominal_loads(b, i, whole);
+			part_nominal_loads(b, i, full);
 			continue;
 		}
 		for (c->interval = 0; c->interval < segments; c->interval++) {
-			struct form *here = form_at(point, whole), *left = time_part(here, true);
+			struct form *here = form_at(point, full), *left = time_part(here, true);
 			b->load[c->interval * n + i] = form_sum(here, left, true);
 			b->time_left[i] = c->interval == 0 ? left : b->time_left[i];
 			same = same && same_form(left, b->time_left[i]);
 		}
 		if (!same)
-			b->time_left[i] = time_part(whole, true);
+			b->time_left[i] = time_part(full, true);
 		for (int s = 0; s < segments && !same; s++)
-			b->load[s * n + i] = form_sum(whole, b->time_left[i], true);
+			b->load[s * n + i] = form_sum(full, b->time_left[i], true);
 	}
 	c->interval = 0;
 }
 
 static const struct form *load_form(const struct building *b, int segment, int row)
 {
-	return b->whole ? b->load[segment * b->model->n + row] : b->segment_equations[segment].residual[row].form;
+	return b->full ? b->load[segment * b->model->n + row] : b->segment_equations[segment].residual[row].form;
 }
 
 /* The first in the text of those that are not piecewise linear; or of all */
@@ -278,7 +278,7 @@ static enum scheme scheme_of_choice(const struct building *b)
 static bool goes_by_series(const struct building *b)
 {
 	const struct model *model = b->model;
-	bool chosen = !model->asked.scheme_at.source && !is_piecewise_linear(b);
+	bool chosen = !model->request.scheme_at.source && !is_piecewise_linear(b);
 	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
 	       !b->request->loads_left;
 }
@@ -315,11 +315,11 @@ static void keep_loads(struct building *b, const char *why)
 {
 	if (!b->request->loads_left)
 		return;
-	stand_aside(b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at,
+	stand_aside(b->model->request.scheme_at.source ? b->model->request.scheme_at : b->spec->name_at,
 		    "--loads remainder", why);
 	struct request *request = NEW(struct request);
 	*request = *b->request;
-	request->loads_left = b->model->asked.loads_left = false;
+	request->loads_left = b->model->request.loads_left = false;
 	b->request = request;
 }
 
@@ -334,7 +334,7 @@ static bool choose_scheme(struct building *b)
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(report_friction_stands, b);
-	if (!linear && !model->asked.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
+	if (!linear && !model->request.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
 		silent_guard(find_obstacle, b);
@@ -344,7 +344,7 @@ static bool choose_scheme(struct building *b)
 		keep_loads(b, format("scheme exact has no quadrature; %s have", leaving_schemes(" and ")));
 	if (model->scheme == SCHEME_EXACT && !linear && is_piecewise_linear(b)) {
 		find_regions(b);
-		collect_whole(b);               /* for outputs and NAME_rhs */
+		collect_full(b);                /* for outputs and NAME_rhs */
 		if (!diagnostics_errors())
 			statement_guard(part_loads, b);
 		return !diagnostics_errors();
@@ -354,12 +354,12 @@ static bool choose_scheme(struct building *b)
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);
 	if (!linear || b->request->loads_left || b->spec->operators.given)
-		collect_whole(b);
+		collect_full(b);
 	/* in normal modes known loads are forces like others */
-	model->remainder.loads = b->whole && (b->request->loads_left || scheme_row(model->scheme)->modes);
-	if (b->whole && !diagnostics_errors())
+	model->remainder.loads = b->full && (b->request->loads_left || scheme_row(model->scheme)->modes);
+	if (b->full && !diagnostics_errors())
 		statement_guard(part_loads, b);
-	if (b->whole && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)))
+	if (b->full && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)))
 		statement_guard(choose_beside_contacts, b);
 	return !diagnostics_errors();
 }
@@ -397,7 +397,7 @@ void build_system(struct building *b)
 		add_elements(b, &b->segment_equations[s]);
 	if (diagnostics_errors() || !choose_scheme(b))
 		return;
-	const struct segment_equations *rows = b->whole ? b->whole : b->segment_equations;
+	const struct segment_equations *rows = b->full ? b->full : b->segment_equations;
 	fill_states(b, rows);
 	for (int s = 0; s < system->segments && !model->remainder.loads; s++)
 		for (int i = 0; i < model->n; i++)
@@ -412,7 +412,7 @@ void build_system(struct building *b)
 	model->equations.owner = b->owner;
 	model->equations.residual = rows->residual;
 	model->equations.segment_equations = b->segment_equations;
-	model->equations.whole = b->whole;
-	if (b->whole && !diagnostics_errors())
+	model->equations.full = b->full;
+	if (b->full && !diagnostics_errors())
 		prefer_stiff(b);
 }

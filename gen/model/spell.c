@@ -18,19 +18,20 @@ static const char *joined(const char *left, const char *right)
 
 const char *column_text(const struct load *load, int column)
 {
-	const struct wave *wave = load->wave;
-	bool turns = oscillates(wave);
+	const struct forcing *forcing = load->forcing;
+	bool turns = oscillates(forcing);
 	int power = turns ? column / 2 : column;
 	const char *text = power == 0 ? "" : power == 1 ? "t" : format("t^%d", power);
-	if (mpq_sgn(wave->a) != 0)
-		text = joined(text, format("exp(%s)", times_t(wave->a)));
+	if (mpq_sgn(forcing->a) != 0)
+		text = joined(text, format("exp(%s)", times_t(forcing->a)));
 	if (turns) {
 		RATIONAL size = ZERO;
-		mpq_abs(size, wave->p);
+		mpq_abs(size, forcing->p);
 		const char *phase = mpq_sgn(size) == 0
 					    ? ""
-					    : format(" %c %s", mpq_sgn(wave->p) < 0 ? '-' : '+', readable_text(size));
-		text = joined(text, format("%s(%s%s)", column % 2 ? "sin" : "cos", times_t(wave->w), phase));
+					    : format(" %c %s", mpq_sgn(forcing->p) < 0 ? '-' : '+',
+						     readable_text(size));
+		text = joined(text, format("%s(%s%s)", column % 2 ? "sin" : "cos", times_t(forcing->w), phase));
 	}
 	return *text ? text : "1";
 }
@@ -46,8 +47,8 @@ static const char *spell_form(struct spelling *s, const struct form *form);
 static const char *let_of(const struct model *model, const struct atom *atom)
 {
 	for (const struct symbol *s = model->spec->first; s; s = s->next) {
-		const struct form_term *only = s->kind == SYMBOL_LET && s->made.whole && s->made.whole->terms == 1
-						       ? s->made.whole->term
+		const struct form_term *only = s->kind == SYMBOL_LET && s->made.full && s->made.full->terms == 1
+						       ? s->made.full->term
 						       : NULL;
 		if (only && only->basis.atom == atom && mpq_cmp_ui(only->factor, 1, 1) == 0)
 			return s->name;
@@ -134,8 +135,8 @@ static const char *basis_text(struct spelling *s, const struct basis *basis)
 			      model->names.coord[basis->index], basis->order, "''");
 	default:          break;
 	}
-	struct load load = { .wave = basis->wave };
-	return column_text(&load, oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power);
+	struct load load = { .forcing = basis->forcing };
+	return column_text(&load, oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power);
 }
 
 static const char *add_term(struct spelling *s, const char *text, const struct form_term *term, bool negate)

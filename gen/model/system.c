@@ -13,21 +13,21 @@ static void fill_row(struct linear *system, int row, const struct form *form)
 				form->term[i].factor);
 }
 
-static struct load *load_of_wave(struct model *model, const struct wave *wave)
+static struct load *load_of_forcing(struct model *model, const struct forcing *forcing)
 {
 	struct linear *system = &model->system;
 	for (int i = 0; i < system->loads; i++)
-		if (system->load[i].wave == wave)
+		if (system->load[i].forcing == forcing)
 			return &system->load[i];
 	struct load *load = MORE(system->load, system->loads);
-	*load = (struct load){ .wave = wave };
+	*load = (struct load){ .forcing = forcing };
 	return load;
 }
 
 /* Room for t^power: columns of lower powers come first, so that those already there stay. */
 static void make_room(struct model *model, struct load *load, int power)
 {
-	int columns = (power + 1) * (oscillates(load->wave) ? 2 : 1);
+	int columns = (power + 1) * (oscillates(load->forcing) ? 2 : 1);
 	if (columns <= load->columns)
 		return;
 	ENLARGE(load->force, (size_t)columns);
@@ -38,7 +38,7 @@ static void make_room(struct model *model, struct load *load, int power)
 
 static int load_column(const struct basis *basis)
 {
-	return oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
+	return oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power;
 }
 
 /* The loads of a form get their place; a constant is the power 0 of the polynomial load. */
@@ -47,9 +47,9 @@ void place_loads(struct building *b, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind <= BASIS_PI)
-			make_room(b->model, load_of_wave(b->model, b->polynomial), 0);
-		else if (basis->kind == BASIS_WAVE)
-			make_room(b->model, load_of_wave(b->model, basis->wave), basis->power);
+			make_room(b->model, load_of_forcing(b->model, b->polynomial), 0);
+		else if (basis->kind == BASIS_FORCING)
+			make_room(b->model, load_of_forcing(b->model, basis->forcing), basis->power);
 	}
 }
 
@@ -62,11 +62,12 @@ void spread_loads(struct building *b, const struct form *form,
 	const struct form plain = constant_terms(form);
 	constant_value(&b->collector, &plain, constant);
 	if (mpq_sgn(constant) != 0)
-		spread(context, (int)(load_of_wave(b->model, b->polynomial) - system->load), 0, constant);
+		spread(context, (int)(load_of_forcing(b->model, b->polynomial) - system->load), 0, constant);
 	for (int i = plain.terms; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_WAVE)
-			spread(context, (int)(load_of_wave(b->model, basis->wave) - system->load), load_column(basis),
+		if (basis->kind == BASIS_FORCING)
+			spread(context, (int)(load_of_forcing(b->model, basis->forcing) - system->load),
+			       load_column(basis),
 			       form->term[i].factor);
 	}
 }

@@ -25,7 +25,7 @@ static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
 static struct place scheme_place(const struct building *b)
 {
-	return b->model->asked.scheme_at.source ? b->model->asked.scheme_at : b->spec->name_at;
+	return b->model->request.scheme_at.source ? b->model->request.scheme_at : b->spec->name_at;
 }
 
 static void check_predictor(struct jacobian *j)
@@ -195,7 +195,7 @@ static int slopes(double t, const double y[], double dydt[], void *context)
 	mpfr_set_d(r->t, t, MPFR_RNDN);
 	sample_at(r->sample, r->t);
 	for (int i = 0; i < n; i++) {
-		sample_form(r->sample, r->b->whole->residual[i].form, r->value);
+		sample_form(r->sample, r->b->full->residual[i].form, r->value);
 		r->residual[i] = mpfr_get_d(r->value, MPFR_RNDN);
 		if (!isfinite(r->residual[i]))
 			return GSL_EBADFUNC;
@@ -363,14 +363,15 @@ static void check_truncation(const struct building *b)
 				  ? "each step is h, whatever its error"
 				  : format("scheme %s does not look at its error", scheme_name(model->scheme));
 	bool expands = scheme_row(model->scheme)->expands;
-	const char *asked = b->request->tolerance;
-	if ((asked || b->spec->asked.tolerance) && !expands)
-		say_warning(asked ? (struct place){ source_argument(asked), 0 } : b->spec->asked.tolerance->start, NULL,
+	const char *requested = b->request->tolerance;
+	if ((requested || b->spec->request.tolerance) && !expands)
+		say_warning(requested ? (struct place){ source_argument(requested), 0 }
+			    : b->spec->request.tolerance->start, NULL,
 			    "the tolerance has no effect: %s", why);
-	else if (b->spec->asked.absolutes > 0 && mpq_sgn(model->truncation.tolerance) == 0)
-		say_warning(b->spec->asked.absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
-	if (b->spec->asked.substeps && !model->truncation.adaptive)
-		say_warning(b->spec->asked.substeps->start, NULL, "the bound on substeps has no effect: %s", why);
+	else if (b->spec->request.absolutes > 0 && mpq_sgn(model->truncation.tolerance) == 0)
+		say_warning(b->spec->request.absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
+	if (b->spec->request.substeps && !model->truncation.adaptive)
+		say_warning(b->spec->request.substeps->start, NULL, "the bound on substeps has no effect: %s", why);
 }
 
 static void check_need(const struct building *b, bool left)

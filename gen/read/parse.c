@@ -7,8 +7,8 @@
 /* By a file that stands on this one */
 static void read_part(struct parser *p)
 {
-	p->spec->scene.uses = p->lexer.points = true;
-	p->spec->scene.reader->read(p);
+	p->spec->assembly.uses = p->lexer.points = true;
+	p->spec->assembly.reader->read(p);
 }
 
 static const struct statement {
@@ -172,7 +172,7 @@ static void declare_what_failed(struct parser *p, size_t from)
 		    (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
 	if (statement && statement->read == read_part)
-		p->spec->scene.reader->failed(p, after);
+		p->spec->assembly.reader->failed(p, after);
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
 			   statement->read != read_output && statement->read != read_matrix_statement))
@@ -243,13 +243,13 @@ static void take_unfinished_lines(struct parser *p)
 }
 
 /* spec: { statement line-end } */
-void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source)
+void parse_statements(struct spec *spec, struct spec *own, struct assembly_part *part, const struct source *source)
 {
 	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 	while (position < source->length) {
 		size_t unclosed, from = position;
 		struct parser p = { .spec = spec, .own = own, .part = part, .goes_on = goes_on };
-		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->scene.uses,
+		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->assembly.uses,
 					  false };
 		position = p.lexer.end + 1;
 		for (size_t i = from; strchr(" \t\r\f\v", source->text[i]) && i < p.lexer.end;)
@@ -280,7 +280,7 @@ struct spec *parse_whole(const struct source *source, const struct part_reader *
 {
 	struct spec *spec = NEW(struct spec);
 	spec->source = source;
-	spec->scene.reader = reader;
+	spec->assembly.reader = reader;
 	spec->last = &spec->first;
 	spec->bucket = ARRAY(struct symbol *, BUCKETS);
 	spec->end = place_end(source);
@@ -311,7 +311,7 @@ static void read_argument(void *context)
 static struct node *parse_part(struct spec *spec, struct lexer lexer, struct argument argument)
 {
 	argument.parser = (struct parser){ .spec = spec, .own = spec, .lexer = lexer };
-	argument.parser.lexer.points = spec->scene.uses;
+	argument.parser.lexer.points = spec->assembly.uses;
 	statement_guard(read_argument, &argument);
 	return argument.value;
 }

@@ -6,11 +6,11 @@
 #include "read/read.h"
 
 struct parser {
-	struct spec *spec;          /* the whole scene */
-	/* what is the text's own: its name, step, scheme, operator. Of the scene's text: the same; of a part's: read,
-	 * and then left aside */
+	struct spec *spec;          /* the whole assembly */
+	/* what is the text's own: its name, step, scheme, operator. Of the assembly's text: the same; of a part's:
+	 * read, and then left aside */
 	struct spec *own;
-	struct scene_part *part;          /* whose text it is; NULL: the scene's */
+	struct assembly_part *part;       /* whose text it is; NULL: the assembly's */
 	struct lexer lexer;
 	struct token token;         /* the next one, not yet taken */
 	struct place end;           /* just after the last one taken */
@@ -78,7 +78,7 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 void add_file(struct spec *spec, const char *path);
 const char *beside(const struct source *source, const char *name); /* the path of what a text names */
 struct node *read_file_name(struct parser *p);
-/* of a coordinate; what a part's own text gives, the scene gives again */
+/* of a coordinate; what a part's own text gives, the assembly gives again */
 void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value);
 void read_param(struct parser *p);
 void read_let(struct parser *p);
@@ -92,7 +92,7 @@ void read_step(struct parser *p);
 struct node *take_order(struct parser *p, struct node **over);
 void read_scheme(struct parser *p);
 
-/* ---- asked.c ---- */
+/* ---- requests.c ---- */
 
 void read_tolerance(struct parser *p);
 void read_substeps(struct parser *p);
@@ -108,9 +108,9 @@ void read_budget(struct parser *p);
 
 void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind); /* broken, unless it is known */
 struct spec *parse_whole(const struct source *source, const struct part_reader *reader);
-void parse_statements(struct spec *spec, struct spec *own, struct scene_part *part, const struct source *source);
+void parse_statements(struct spec *spec, struct spec *own, struct assembly_part *part, const struct source *source);
 
-/* ---- sketch.c ---- */
+/* ---- network.c ---- */
 
 void read_mass(struct parser *p);
 void read_spring(struct parser *p);

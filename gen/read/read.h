@@ -115,14 +115,14 @@ struct symbol_value {               /* its `value`, collected */
 	struct value *value;        /* if COLLECTED */
 	struct span span;           /* when it holds, */
 	bool irrational;            /* something in it has become a rational */
-	const struct form *whole;   /* of a scalar let: its value for all time, where something is left over */
+	const struct form *full;   /* of a scalar let: its value for all time, where something is left over */
 };
 struct symbol {
 	enum symbol_kind kind;
 	int number;                 /* 1, 2, ... in the order of declaration; 0: no statement declares it */
 	const char *name;           /* of what belongs to a part: front.body */
 	struct place at;
-	const struct scene_part *part;    /* whose text declares it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text declares it; NULL: the assembly's */
 	size_t statement;           /* offset of the statement that declares it */
 	/* among its kind, in the order of declaration; of a coordinate: of its first component */
 	int index;
@@ -134,7 +134,7 @@ struct symbol {
 	/* of a coordinate: its order, 1 or 2; of a let: 1 if it reads a highest derivative, else -1, 0 unknown */
 	int highest;
 	bool peak;                  /* of an output: peak(value) */
-	bool connected;             /* of a let: an input of a part, to which the scene gives its value */
+	bool connected;             /* of a let: an input of a part, to which the assembly gives its value */
 	/* of an input that is another one as it was some time ago, declared by u(t - d): that one, and t - d; else
 	 * NULL */
 	const struct symbol *delayed;
@@ -148,12 +148,12 @@ struct symbol {
 };
 struct equation {
 	struct place at, end;       /* first token; just after the last */
-	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text has it; NULL: the assembly's */
 	struct node *left, *right;
 };
-struct element {                    /* of a sketch */
+struct element {                    /* of a network */
 	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE, ELEMENT_FRICTION } kind;
-	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text has it; NULL: the assembly's */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
 };
@@ -162,7 +162,7 @@ struct state_jump {                 /* of `when`: state = value just behind it *
 };
 struct when {                       /* when guard: jump, jump;  or a stop that bounces */
 	struct place at, end;
-	const struct scene_part *part;    /* whose text has it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text has it; NULL: the assembly's */
 	struct node *guard;         /* a comparison, < <= > or >= */
 	int jumps;
 	struct state_jump *jump;
@@ -172,7 +172,7 @@ struct when {                       /* when guard: jump, jump;  or a stop that b
 };
 struct initial {
 	struct place at;
-	const struct scene_part *part;    /* whose text gives it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text gives it; NULL: the assembly's */
 	size_t statement;
 	struct symbol *coord;
 	int primes, component;
@@ -180,7 +180,7 @@ struct initial {
 };
 struct state_bound {                /* range NAME in [LOW, HIGH]; tolerance of NAME = LOW */
 	struct place at;
-	const struct scene_part *part;    /* whose text gives it; NULL: the scene's */
+	const struct assembly_part *part; /* whose text gives it; NULL: the assembly's */
 	struct symbol *coord;
 	int primes, component;
 	struct node *low, *high;    /* high NULL: there is none */
@@ -204,15 +204,15 @@ struct tunable {                    /* a param that the target may change */
 	struct symbol *symbol;
 	struct node *low, *high;    /* its range; NULL: it has none */
 };
-struct scene_part {                       /* of a scene: a spec in it, as often as `use` names it */
+struct assembly_part {                    /* of an assembly: a spec in it, as often as `use` names it */
 	const char *name;           /* front; inside another: half.front */
 	const char *file;           /* as written */
 	struct place at;            /* what names it */
 	const struct source *source;
-	const struct scene_part *inside;  /* another part; NULL: the scene */
+	const struct assembly_part *inside; /* another part; NULL: the assembly */
 	bool broken;                /* it was told what is wrong */
 	bool unobservable;          /* by any output: not in the model */
-	const char *aside;          /* statements of its text that a scene does not read; "": none */
+	const char *aside;          /* statements of its text that an assembly does not read; "": none */
 	int bindings;
 	struct binding *binding;
 };
@@ -234,7 +234,7 @@ struct budget {                     /* budget N instructions on TARGET */
 	struct node *instructions;  /* NULL: there is none */
 	struct token target;
 };
-struct asked_scheme {
+struct requested_scheme {
 	struct node *step;
 	struct place step_at;
 	const char *scheme;
@@ -246,7 +246,7 @@ struct asked_scheme {
 	int absolutes;
 	struct state_bound *absolute_of;  /* the same of some states */
 };
-struct asked_operators {
+struct requested_operators {
 	bool given;
 	struct node *count;         /* of a schedule between two values; NULL: each has a value of its own */
 	struct place at;
@@ -258,11 +258,11 @@ struct spec_counts {
 	int components;             /* of all coordinates together */
 	int delays;                 /* of the inputs, those that are others some time ago */
 };
-struct scene {
+struct assembly {
 	bool uses;                  /* there is a statement `use` */
 	const struct part_reader *reader;
 	int parts;                  /* in the order of `use`, those inside a part after it */
-	struct scene_part **part;
+	struct assembly_part **part;
 	int unobservable;           /* states of parts that no output sees, and their names */
 	const char **unobservable_name;
 };
@@ -273,7 +273,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol *first, **last;   /* all symbols in the order of declaration */
 	struct symbol **bucket;         /* the same by name */
 	struct spec_counts count;
-	struct scene scene;
+	struct assembly assembly;
 	bool lacks_coords;          /* there is no coordinate, and that was told */
 	int equations;
 	struct equation *equation;
@@ -284,10 +284,10 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct { int files; const char **file; } data;  /* for the dependency file */
 	int initials;
 	struct initial *initial;
-	struct asked_scheme asked;
+	struct requested_scheme request;
 	int ranges;
 	struct state_bound *range;
-	struct asked_operators operators;
+	struct requested_operators operators;
 	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
 	struct tunable *tunable;
 	struct { int needs; struct need *need; struct budget budget; } required;
@@ -328,10 +328,10 @@ struct node *with_unit(struct node *value, const struct unit *unit); /* unit NUL
 struct node *convert_unit(struct node *value, const struct unit *unit, bool inverse);
 struct node *state_node(struct symbol *coord, int component, int primes); /* at its declaration */
 
-/* ---- use.c: parts of a scene, for a reader ---- */
+/* ---- use.c: parts of an assembly, for a reader ---- */
 
 /* an equation or element: front: M*x'' = 0 */
-const char *written_text(const struct scene_part *part, struct place at, struct place end);
+const char *written_text(const struct assembly_part *part, struct place at, struct place end);
 /* axle.spec as front, rear; NULL: it is told with a part before it */
 const char *parts_text(const struct spec *spec, int index);
 

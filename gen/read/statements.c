@@ -15,7 +15,7 @@ struct token expect_new_name(struct parser *p, const char *what)
 	return take(p);
 }
 
-/* Names that differ in a point for a _ are one in C. Told where the scene makes them meet. */
+/* Names that differ in a point for a _ are one in C. Told where the assembly makes them meet. */
 static void check_name_in_c(const struct parser *p, const char *name, struct place at)
 {
 	for (const struct symbol *s = p->spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike) {
@@ -61,11 +61,11 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 	return symbol;
 }
 
-/* What the scene gives to the part that is read; or NULL */
+/* What the assembly gives to the part that is read; or NULL */
 static const struct binding *binding_of(const struct parser *p, const char *name)
 {
 	const struct binding *found = NULL;
-	for (const struct scene_part *part = p->part; part; part = part->inside) {
+	for (const struct assembly_part *part = p->part; part; part = part->inside) {
 		for (int i = 0; i < part->bindings; i++) {
 			struct binding *binding = &part->binding[i];
 			if (strcmp(binding->name.name, name) != 0 || binding->name.primes || binding->component)
@@ -79,7 +79,7 @@ static const struct binding *binding_of(const struct parser *p, const char *name
 	return found;
 }
 
-/* In a part: what the scene gives instead; numbers of it count in the unit that is written in the part */
+/* In a part: what the assembly gives instead; numbers of it count in the unit that is written in the part */
 static struct node *given_value(struct parser *p, const char *name, struct node *value, const struct unit *unit)
 {
 	const struct binding *binding = binding_of(p, name);
@@ -258,7 +258,7 @@ void read_input(struct parser *p)
 	apply_hold(p, input, phrases);
 }
 
-/* What a part has of its own the scene may give again: the later one counts. */
+/* What a part has of its own the assembly may give again: the later one counts. */
 void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
 {
 	struct spec *spec = p->spec;
@@ -336,7 +336,7 @@ static void read_plain_output(struct parser *p, struct token name)
 		value = convert_unit(value, unit, true);
 	if (p->token.kind != TOKEN_END && !is_op(p, ","))
 		unexpected(p, "'=' or ','");
-	if (p->part)                            /* the scene names it as it is */
+	if (p->part)                            /* the assembly names it as it is */
 		return;
 	for (struct symbol *s = p->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
@@ -408,10 +408,10 @@ void read_output(struct parser *p)
 void read_step(struct parser *p)
 {
 	struct place at = last_token(p, 4);
-	if (p->own->asked.step)
+	if (p->own->request.step)
 		error(at, NULL, "the step is given already");
-	p->own->asked.step_at = p->token.at;
-	p->own->asked.step = read_quantity(p);
+	p->own->request.step_at = p->token.at;
+	p->own->request.step = read_quantity(p);
 	expect_end(p);
 }
 
@@ -430,17 +430,17 @@ struct node *take_order(struct parser *p, struct node **over)
 void read_scheme(struct parser *p)
 {
 	struct place at = last_token(p, 6);
-	if (p->own->asked.scheme)
+	if (p->own->request.scheme)
 		error(at, NULL, "the scheme is given already");
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
 		unexpected(p, "the name of a scheme");
 	struct token name = take(p);
-	p->own->asked.scheme_at = name.at;
+	p->own->request.scheme_at = name.at;
 	enum scheme scheme;
 	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
 	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
 		/* a number behind another scheme is told later */
-		p->own->asked.order = take_order(p, &p->own->asked.over);
+		p->own->request.order = take_order(p, &p->own->request.over);
 	expect_end(p);
-	p->own->asked.scheme = name.name;
+	p->own->request.scheme = name.name;
 }

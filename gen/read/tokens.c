@@ -47,7 +47,7 @@ static bool starts_definition(const struct parser *p)
 	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
 }
 
-/* A word between the parts of an element of a sketch. */
+/* A word between the parts of an element of a network. */
 static bool is_place(struct token token)
 {
 	static const char *const word[] = { "at", "between", "on", "ground" };

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What no output of a scene can see is not modelled: parts, and coordinates. What an equation names is seen together,
- * and what an element of a sketch acts on; a force sees what it reads, and not the other way round. */
+/* What no output of an assembly can see is not modelled: parts, and coordinates. What an equation names is seen
+ * together, and what an element of a network acts on; a force sees what it reads, and not the other way round. */
 #include "read/parser.h"
 
 struct list {                       /* of coordinates */
@@ -119,14 +119,14 @@ static void follow(struct sight *sight, const struct tie *tie)
 static void find_unobservable_parts(struct sight *sight)
 {
 	struct spec *spec = sight->spec;
-	for (int i = 0; i < spec->scene.parts; i++) {
+	for (int i = 0; i < spec->assembly.parts; i++) {
 		bool any = false, seen = false;
 		for (const struct symbol *s = spec->first; s; s = s->next)
-			if (s->kind == SYMBOL_COORD && s->part == spec->scene.part[i]) {
+			if (s->kind == SYMBOL_COORD && s->part == spec->assembly.part[i]) {
 				any = true;
 				seen = seen || sight->seen[s->number];
 			}
-		spec->scene.part[i]->unobservable = any && !seen;
+		spec->assembly.part[i]->unobservable = any && !seen;
 	}
 }
 
@@ -168,7 +168,7 @@ static void name_unobservable(struct spec *spec, const struct symbol *coord)
 	int count = coord->length ? coord->length : 1;
 	for (int k = 0; k < (has_velocity(spec, coord) ? 2 : 1) * count; k++) {
 		const char *prime = k < count ? "" : "'";
-		*MORE(spec->scene.unobservable_name, spec->scene.unobservable) =
+		*MORE(spec->assembly.unobservable_name, spec->assembly.unobservable) =
 			coord->length ? format("%s[%d]%s", coord->name, k % count + 1, prime)
 				      : format("%s%s", coord->name, prime);
 	}
@@ -230,7 +230,7 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 	spec->operators.fixeds = fixeds;
 	spec->operators.given = fixeds > 0;
 	drop_bounds(&spec->ranges, spec->range, gone);
-	drop_bounds(&spec->asked.absolutes, spec->asked.absolute_of, gone);
+	drop_bounds(&spec->request.absolutes, spec->request.absolute_of, gone);
 }
 
 static void drop_ties(struct sight *sight, const struct tie *tie)
@@ -255,8 +255,8 @@ static void drop_ties(struct sight *sight, const struct tie *tie)
 static void report(const struct sight *sight)
 {
 	const struct spec *spec = sight->spec;
-	for (int i = 0; i < spec->scene.parts; i++) {
-		const struct scene_part *part = spec->scene.part[i];
+	for (int i = 0; i < spec->assembly.parts; i++) {
+		const struct assembly_part *part = spec->assembly.part[i];
 		if (part->unobservable && !(part->inside && part->inside->unobservable))
 			say_note(part->at, "part '%s' is not modelled: no output sees it", part->name);
 	}

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A scene of parts: each is a spec of its own, whose names get the part's name in front, front.body. What belongs to
- * all parts together is one flat spec, as if all had been written in one text. */
+/* An assembly of parts: each is a spec of its own, whose names get the part's name in front, front.body. What belongs
+ * to all parts together is one flat spec, as if all had been written in one text. */
 #include "read/parser.h"
 
 #include <string.h>
@@ -11,7 +11,7 @@
 struct text {
 	dev_t device;
 	ino_t file;
-	struct source *source;      /* NULL: of the scene itself */
+	struct source *source;      /* NULL: of the assembly itself */
 	bool good;                  /* by itself nothing is wrong with it */
 	bool open;                  /* it is being looked at: what uses it now stands in it */
 	const char *shown;
@@ -32,7 +32,7 @@ static struct text *text_of(const char *path)
 	return known = text;
 }
 
-static void open_scene(const struct source *source)
+static void open_assembly(const struct source *source)
 {
 	struct text *text = text_of(source->name);
 	if (text)
@@ -93,7 +93,7 @@ static const struct text *read_text(const char *path, struct place at)
 	return text;
 }
 
-/* ---- what the scene gives ---- */
+/* ---- what the assembly gives ---- */
 
 /* binding: NAME [ component ] { ' } = expression [ unit ] */
 static struct binding read_binding(struct parser *p)
@@ -109,7 +109,7 @@ static struct binding read_binding(struct parser *p)
 	return binding;
 }
 
-static void read_bindings(struct parser *p, struct scene_part *use)
+static void read_bindings(struct parser *p, struct assembly_part *use)
 {
 	bool before = p->no_acceleration;
 	p->no_acceleration = true;
@@ -125,7 +125,7 @@ static void read_bindings(struct parser *p, struct scene_part *use)
 }
 
 /* The nearest of the part's names, without the part's own */
-static const char *nearest_in_part(const struct spec *spec, const struct scene_part *part, const char *name)
+static const char *nearest_in_part(const struct spec *spec, const struct assembly_part *part, const char *name)
 {
 	int count = 0;
 	size_t length = strlen(part->name);
@@ -138,7 +138,7 @@ static const char *nearest_in_part(const struct spec *spec, const struct scene_p
 }
 
 /* What was not taken as the part was read: initial values, and what a part has not */
-static void bind(struct parser *p, const struct scene_part *part, const struct binding *binding)
+static void bind(struct parser *p, const struct assembly_part *part, const struct binding *binding)
 {
 	struct spec *spec = p->spec;
 	struct token name = binding->name;
@@ -165,10 +165,10 @@ static void bind(struct parser *p, const struct scene_part *part, const struct b
 static const char *left_aside(const struct spec *own)
 {
 	const struct { const char *word; bool there;
-	} statement[] = { { "step", own->asked.step != NULL },
-			  { "scheme", own->asked.scheme != NULL },
-			  { "tolerance", own->asked.tolerance != NULL || own->asked.absolutes > 0 },
-			  { "substeps", own->asked.substeps != NULL },
+	} statement[] = { { "step", own->request.step != NULL },
+			  { "scheme", own->request.scheme != NULL },
+			  { "tolerance", own->request.tolerance != NULL || own->request.absolutes > 0 },
+			  { "substeps", own->request.substeps != NULL },
 			  { "operator", own->operators.given },
 			  { "modes", own->modes.count > 0 },
 			  { "need", own->required.needs > 0 },
@@ -180,15 +180,15 @@ static const char *left_aside(const struct spec *own)
 	return list;
 }
 
-static void add_part(struct parser *p, struct token name, const struct scene_part *use, const struct text *text)
+static void add_part(struct parser *p, struct token name, const struct assembly_part *use, const struct text *text)
 {
 	struct spec *spec = p->spec;
-	struct scene_part *part = NEW(struct scene_part);
+	struct assembly_part *part = NEW(struct assembly_part);
 	declare(p, name, SYMBOL_PART, !text->good);
 	if (!text->good)
 		return;
-	if (spec->scene.parts == LIMIT_SCENE)
-		error(name.at, NULL, "more parts than the limit of %d", LIMIT_SCENE);
+	if (spec->assembly.parts == LIMIT_ASSEMBLY)
+		error(name.at, NULL, "more parts than the limit of %d", LIMIT_ASSEMBLY);
 	*part = *use;
 	part->name = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
 	part->at = name.at;
@@ -197,7 +197,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 	part->binding = ARRAY(struct binding, use->bindings);
 	for (int i = 0; i < use->bindings; i++)
 		part->binding[i] = use->binding[i];
-	*MORE(spec->scene.part, spec->scene.parts) = part;
+	*MORE(spec->assembly.part, spec->assembly.parts) = part;
 	struct spec *own = NEW(struct spec);
 	parse_statements(spec, own, part, text->source);
 	part->aside = left_aside(own);
@@ -209,7 +209,7 @@ static void add_part(struct parser *p, struct token name, const struct scene_par
 /* use: use STRING as NAME { , NAME } [ with binding { , binding } ] */
 static void read_use(struct parser *p)
 {
-	struct scene_part use = { 0 };
+	struct assembly_part use = { 0 };
 	struct token file = p->token, *name = NULL;
 	size_t names = 0;
 	if (p->token.kind != TOKEN_STRING)
@@ -265,16 +265,16 @@ static void use_failed(struct parser *p, size_t after)
 
 struct spec *parse_spec(const struct source *source)
 {
-	open_scene(source);
+	open_assembly(source);
 	struct spec *spec = parse_whole(source, &reader);
-	if (spec->scene.parts && !diagnostics_errors())
+	if (spec->assembly.parts && !diagnostics_errors())
 		leave_unobservable(spec);
 	return spec;
 }
 
 /* ---- for a reader ---- */
 
-const char *written_text(const struct scene_part *part, struct place at, struct place end)
+const char *written_text(const struct assembly_part *part, struct place at, struct place end)
 {
 	const char *text = text_between(at, end);
 	return part ? format("%s: %s", part->name, text) : text;
@@ -283,10 +283,10 @@ const char *written_text(const struct scene_part *part, struct place at, struct 
 /* Parts of one file, all modelled or none, are told together at the first of them. */
 const char *parts_text(const struct spec *spec, int index)
 {
-	const struct scene_part *part = spec->scene.part[index];
+	const struct assembly_part *part = spec->assembly.part[index];
 	const char *names = "";
-	for (int i = 0; i < spec->scene.parts; i++) {
-		const struct scene_part *other = spec->scene.part[i];
+	for (int i = 0; i < spec->assembly.parts; i++) {
+		const struct assembly_part *other = spec->assembly.part[i];
 		if (other->source != part->source || other->unobservable != part->unobservable)
 			continue;
 		if (i < index)

@@ -2,41 +2,41 @@
 /* What is held beside a series, and what strikes: in words and as JSON. */
 #include "model/contacts/contacts.h"
 #include "report/report.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
 
 /* The interval of its expression in which it is held */
 static int held_in(const struct step *step, const struct series_hold *hold)
 {
-	return step->taylor.divided->expression[hold->expression].rank[hold->breakpoint] + 1;
+	return step->taylor.switching->function[hold->function].rank[hold->breakpoint] + 1;
 }
 
 const char *contact_text(const struct step *step, int hold)
 {
-	const struct contacts *c = step->taylor.divided->contacts;
+	const struct contacts *c = step->taylor.switching->contacts;
 	const struct model *model = step->model;
 	const struct node *node = NULL;
 	for (int i = 0, drag = 0; i <= hold; i++)
 		if (c->hold[i].impact == NONE)
 			node = model->contacts.drag[drag++].atom->node;
-	return format("%s; sticks in interval %d of expression %d", text_between(node->start, node->end),
-		      held_in(step, &c->hold[hold]), c->hold[hold].expression);
+	return format("%s; sticks in interval %d of switching function %d", text_between(node->start, node->end),
+		      held_in(step, &c->hold[hold]), c->hold[hold].function);
 }
 
 static const char *rest_text(const struct step *step, const struct series_impact *series_impact)
 {
-	const struct contacts *c = step->taylor.divided->contacts;
+	const struct contacts *c = step->taylor.switching->contacts;
 	return series_impact->hold == NONE ? "" : format("; a bounce of restitution %s, which rests in interval %d of "
-						  "expression %d",
+						  "switching function %d",
 						  shortest(series_impact->restitution),
 						  held_in(step, &c->hold[series_impact->hold]),
-						  series_impact->expression);
+						  series_impact->function);
 }
 
 void text_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->taylor.divided->contacts;
+	const struct contacts *c = step->taylor.switching->contacts;
 	for (int i = 0, friction = 0; c && i < c->holds; i++)
 		if (c->hold[i].impact == NONE)
 			fprintf(to, "    friction %d: %s\n", friction++, contact_text(step, i));
@@ -49,14 +49,14 @@ void text_contacts(FILE *to, const struct step *step)
 
 void json_contacts(FILE *to, const struct step *step)
 {
-	const struct contacts *c = step->taylor.divided->contacts;
+	const struct contacts *c = step->taylor.switching->contacts;
 	bool first = true;
 	if (c && step->model->contacts.drags > 0)
 		fputs("  \"frictions\": [", to);
 	for (int i = 0; c && i < c->holds; i++) {
 		if (c->hold[i].impact != NONE)
 			continue;
-		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", first ? "" : ", ", c->hold[i].expression,
+		fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", first ? "" : ", ", c->hold[i].function,
 			held_in(step, &c->hold[i]));
 		first = false;
 	}
@@ -65,7 +65,7 @@ void json_contacts(FILE *to, const struct step *step)
 	for (int i = 0; c && i < c->series_impacts; i++) {
 		const struct series_impact *s = &c->series_impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "  \"impacts\": [",
-			s->expression, s->upward ? "true" : "false");
+			s->function, s->upward ? "true" : "false");
 		if (s->hold == NONE)
 			fputs("null}", to);
 		else

@@ -106,7 +106,7 @@ static void text_tuning(FILE *to, const struct step *step)
 			t->all.solves ? ", and are solved for the highest derivatives" : "");
 	if (step->blocks && !step->blocks->solved)
 		fprintf(to, "They touch %d of %d independent blocks; %s.\n", step->blocks->touched, step->blocks->all,
-			step->blocks->whole ? "another h does, too" : "the others have tables, of this h");
+			step->blocks->full ? "another h does, too" : "the others have tables, of this h");
 }
 
 static void text_operations(FILE *to, const struct step *step)
@@ -117,10 +117,10 @@ static void text_operations(FILE *to, const struct step *step)
 		readable_text(model->h), program->multiplications, program->additions);
 	if (step->refresh)
 		fprintf(to, "; every %d steps, for the functions of the loads, %d and %d more", step->refresh->steps,
-			program->wave_multiplications, program->wave_additions);
-	else if (program->wave_multiplications)
-		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->wave_multiplications,
-			program->wave_additions, step->no.refresh ? "; no refresh: " : "",
+			program->forcing_multiplications, program->forcing_additions);
+	else if (program->forcing_multiplications)
+		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->forcing_multiplications,
+			program->forcing_additions, step->no.refresh ? "; no refresh: " : "",
 			step->no.refresh ? step->no.refresh : "");
 	if (program->calls)
 		fprintf(to, ", %d calls of the model's own functions", program->calls);
@@ -129,7 +129,7 @@ static void text_operations(FILE *to, const struct step *step)
 			"none passes its peak",
 			program->peak_multiplications, program->peak_additions);
 	if (step->model->relative)
-		fprintf(to, ".\nWhat may move as a whole is kept apart from what moves in it: the step keeps %s.\n",
+		fprintf(to, ".\nRigid-body modes are kept apart from relative coordinates: the step keeps %s.\n",
 			relative_text(step->model));
 	struct drift drift = drift_of(step);
 	if (drift.known)
@@ -146,7 +146,7 @@ static void text_board(FILE *to, const struct step *step)
 		return;
 	fprintf(to, "On a Cortex-M4, %s: about %s instructions a step, %s at most, by the operations of %d steps "
 		    "from the initial values, inputs 0; an instance has %ld bytes.\n",
-		step->model->asked.single ? "whose FPU has float" : "double in software", two_digits(b->mean),
+		step->model->request.single ? "whose FPU has float" : "double in software", two_digits(b->mean),
 		two_digits(b->most), b->steps, b->bytes);
 }
 
@@ -178,7 +178,7 @@ static void text_step(FILE *to, const struct step *step)
 		fprintf(to, "    %-8s", model->names.state[i]);
 		for (int j = 0; j < model->system.states; j++)
 			fprintf(to, " %24s",
-				shortest(step->shown->branch->whole->Phi[i * model->system.states + j].value));
+				shortest(step->shown->branch->full->Phi[i * model->system.states + j].value));
 		fputc('\n', to);
 	}
 	if (tunables_of(model))
@@ -271,8 +271,8 @@ static void text_split(FILE *to, const struct step *step)
 		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
 			smoothness_text(model));
 	fputs(".\n", to);
-	if (step->taylor.divided)
-		text_divided(to, step);
+	if (step->taylor.switching)
+		text_series_switching(to, step);
 	if (step->taylor.expansion)
 		text_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
@@ -326,11 +326,11 @@ static void text_reduction(FILE *to, const struct step *step)
 		fprintf(to, "    %s\n", pole_text(&pole[i]));
 }
 
-static void text_scene(FILE *to, const struct spec *spec)
+static void text_assembly(FILE *to, const struct spec *spec)
 {
-	if (spec->scene.parts)
+	if (spec->assembly.parts)
 		fputs("\nParts:\n", to);
-	for (int i = 0; i < spec->scene.parts; i++)
+	for (int i = 0; i < spec->assembly.parts; i++)
 		if (parts_text(spec, i))
 			fprintf(to, "    %s\n", parts_text(spec, i));
 }
@@ -346,7 +346,7 @@ void text_equations(FILE *to, const struct step *step)
 	for (int i = 0; i < spec->elements; i++)
 		fprintf(to, "    %s\n",
 			written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
-	text_scene(to, spec);
+	text_assembly(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)

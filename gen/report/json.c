@@ -87,11 +87,11 @@ static void json_column(FILE *to, int rows, int columns, int column, const struc
 /* Columns as the step applies them: to the load states at the start of the step, t^k times cos before sin. */
 static void json_loads(FILE *to, const struct step *step)
 {
-	const struct table *table = step->shown->branch->whole;
+	const struct table *table = step->shown->branch->full;
 	fputs("  \"loads\": [", to);
 	for (int l = 0, column = 0; l < step->branch->system.loads; l++) {
 		const struct load *load = &step->branch->system.load[l];
-		int trig = oscillates(load->wave) ? 2 : 1;
+		int trig = oscillates(load->forcing) ? 2 : 1;
 		for (int k = 0; k < load->columns; k += trig) {
 			fprintf(to, "%s\n    {\"term\": \"%s\", \"columns\": [", column ? "," : "",
 				column_text(load, k));
@@ -156,11 +156,11 @@ static void json_cost(FILE *to, const struct step *step)
 		program->additions);
 	if (program->calls)
 		fprintf(to, ", \"calls\": %d", program->calls);
-	if (program->wave_multiplications)
+	if (program->forcing_multiplications)
 		fprintf(to, ",\n    \"loads\": {\"every\": %d, \"multiplications\": %d, \"additions\": %d, "
 			"\"numbers\": %d}",
-			step->refresh ? step->refresh->steps : 1, program->wave_multiplications,
-			program->wave_additions, refresh_numbers(step));
+			step->refresh ? step->refresh->steps : 1, program->forcing_multiplications,
+			program->forcing_additions, refresh_numbers(step));
 	if (program->peak_multiplications)
 		fprintf(to, ",\n    \"peaks\": {\"multiplications\": %d, \"additions\": %d}",
 			program->peak_multiplications, program->peak_additions);
@@ -181,21 +181,21 @@ static void json_cost(FILE *to, const struct step *step)
 static void json_dropped(FILE *to, const struct model *model)
 {
 	const struct spec *spec = model->spec;
-	const char **name = ARRAY(const char *, (size_t)(spec->scene.unobservable + model->reduction.dropped));
-	for (int i = 0; i < spec->scene.unobservable; i++)
-		name[i] = spec->scene.unobservable_name[i];
+	const char **name = ARRAY(const char *, (size_t)(spec->assembly.unobservable + model->reduction.dropped));
+	for (int i = 0; i < spec->assembly.unobservable; i++)
+		name[i] = spec->assembly.unobservable_name[i];
 	for (int i = 0; i < model->reduction.dropped; i++)
-		name[spec->scene.unobservable + i] = model->reduction.dropped_name[i];
-	member_names(to, "dropped", spec->scene.unobservable + model->reduction.dropped, name);
+		name[spec->assembly.unobservable + i] = model->reduction.dropped_name[i];
+	member_names(to, "dropped", spec->assembly.unobservable + model->reduction.dropped, name);
 }
 
-static void json_scene(FILE *to, const struct spec *spec)
+static void json_assembly(FILE *to, const struct spec *spec)
 {
 	fputs("  \"scene\": [", to);
-	for (int i = 0; i < spec->scene.parts; i++)
+	for (int i = 0; i < spec->assembly.parts; i++)
 		fprintf(to, "%s{\"name\": \"%s\", \"file\": \"%s\", \"modelled\": %s}", i ? ", " : "",
-			spec->scene.part[i]->name, json_text(spec->scene.part[i]->file),
-			spec->scene.part[i]->unobservable ? "false" : "true");
+			spec->assembly.part[i]->name, json_text(spec->assembly.part[i]->file),
+			spec->assembly.part[i]->unobservable ? "false" : "true");
 	fputs("],\n", to);
 }
 
@@ -240,8 +240,8 @@ static void json_scheme(FILE *to, const struct step *step)
 		fprintf(to, "  \"substeps\": %d,\n", model->truncation.substeps);
 	if (step->taylor.expansion && model->truncation.over > 1)
 		fprintf(to, "  \"over\": %d,\n", model->truncation.over);
-	if (step->taylor.divided)
-		json_divided(to, step);
+	if (step->taylor.switching)
+		json_series_switching(to, step);
 	if (step->taylor.expansion)
 		json_reach(to, step);
 }
@@ -258,7 +258,7 @@ void explain_json(FILE *to, const struct step *step)
 	for (int i = 0; i < model->outputs; i++)
 		output[i] = model->output[i].name;
 	for (int i = 0; i < states * states; i++)
-		Phi[i] = step->shown->branch->whole->Phi[i].value;
+		Phi[i] = step->shown->branch->full->Phi[i].value;
 	fprintf(to,
 		"{\n  \"model\": \"%s\",\n  \"scheme\": \"%s\",\n  \"form\": \"%s\",\n  \"accuracy\": \"%s\",\n  "
 		"\"real\": \"%s\",\n  \"step\": %.17g,\n",
@@ -271,8 +271,8 @@ void explain_json(FILE *to, const struct step *step)
 	json_dropped(to, model);
 	if (model->truncated)
 		json_modal_truncation(to, model);
-	if (model->spec->scene.parts)
-		json_scene(to, model->spec);
+	if (model->spec->assembly.parts)
+		json_assembly(to, model->spec);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));
 	json_rational_matrix(to, "M", model->written->n, model->written->system.M);

@@ -41,12 +41,12 @@ static double rounded_up(double x)
 }
 
 /* tip 3.2e-05 */
-const char *loss_text(const struct model *model, int output)
+const char *truncation_text(const struct model *model, int output)
 {
 	const struct modal_truncation *s = model->truncated;
-	const double loss = modes_loss(s->modes, s->kept, s->static_correction, output);
+	const double mode_error = truncation_of_modes(s->modes, s->kept, s->static_correction, output);
 	const char *name = model->output[output].name;
-	return isfinite(loss) ? format("%s %.3g", name, rounded_up(loss))
+	return isfinite(mode_error) ? format("%s %.3g", name, rounded_up(mode_error))
 			      : format("%s without a bound (something dropped grows, or a load has its pole)", name);
 }
 
@@ -94,7 +94,7 @@ void text_modal_truncation(FILE *to, const struct model *model)
 	fprintf(to, "From the start and under the loads%s outputs lose at most (sums of |residues|, for all time):\n",
 		model->system.inputs ? ", inputs 0," : "");
 	for (int i = 0; i < model->outputs; i++)
-		fprintf(to, "    %s\n", loss_text(model, i));
+		fprintf(to, "    %s\n", truncation_text(model, i));
 	fputs("States:", to);
 	for (int i = 0; i < model->system.states; i++)
 		fprintf(to, "%s %s", i ? "," : "", model->names.state[i]);
@@ -117,6 +117,7 @@ void json_modal_truncation(FILE *to, const struct model *model)
 	}
 	fprintf(to, "  ],\n  \"static\": %s,\n  \"lost\": [", s->static_correction ? "true" : "false");
 	for (int i = 0; i < model->outputs; i++)
-		fprintf(to, "%s%s", i ? ", " : "", json_number(modes_loss(s->modes, s->kept, s->static_correction, i)));
+		fprintf(to, "%s%s", i ? ", " : "",
+			json_number(truncation_of_modes(s->modes, s->kept, s->static_correction, i)));
 	fputs("],\n", to);
 }

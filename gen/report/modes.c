@@ -19,7 +19,7 @@ const char *operators_of_modes(const struct step *step)
 
 const char *exact_in_modes(const struct step *step)
 {
-	return step->model->remainder.split->waves
+	return step->model->remainder.split->forcings
 		       ? "what each mode does by itself, and under loads e^{a t} cos(w t + p)"
 		       : "what each mode does by itself";
 }
@@ -50,9 +50,9 @@ int numbers_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
 	int n = m->modes, width = m->width;
-	int waves = 4 * step->model->remainder.split->waves;
-	int multistep = m->multistep.points ? (4 + 2 * m->multistep.points + 2 + waves) * width : 0;
-	int collocation = m->collocation.stages * (4 + 2 * (m->collocation.stages + 1) + waves) * width;
+	int forcings = 4 * step->model->remainder.split->forcings;
+	int multistep = m->multistep.points ? (4 + 2 * m->multistep.points + 2 + forcings) * width : 0;
+	int collocation = m->collocation.stages * (4 + 2 * (m->collocation.stages + 1) + forcings) * width;
 	int forces = 0;
 	for (int f = 0; f < step->model->remainder.split->functions; f++)
 		forces += m->force[f] ? width : 0;
@@ -131,12 +131,13 @@ void program_normal(FILE *to, const struct step *step)
 		if (m->force[f])
 			fprintf(to, "    %s times a vector\n",
 				f ? form_text(step->model, step->model->remainder.split->function[f].form) : "1");
-	for (int k = 0; k < step->model->remainder.split->waves; k++)
-		for (int d = 0; d <= oscillates(step->model->remainder.split->wave[k].wave); d++)
+	for (int k = 0; k < step->model->remainder.split->forcings; k++)
+		for (int d = 0; d <= oscillates(step->model->remainder.split->forcing[k].forcing); d++)
 			fprintf(to, "    %s times a vector, exact\n",
 				form_text(step->model,
-					  form_unit((struct basis){ .kind = BASIS_WAVE,
-								    .wave = step->model->remainder.split->wave[k].wave,
+					  form_unit((struct basis){ .kind = BASIS_FORCING,
+								    .forcing =
+								    step->model->remainder.split->forcing[k].forcing,
 								    .sine = d })));
 	fprintf(to, "Step: %s\n", course_of_modes(step));
 	if (m->steady.flow)

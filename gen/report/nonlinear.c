@@ -53,14 +53,14 @@ static const char *stability_of(const struct step *step)
 
 void text_point(FILE *to, const struct step *step)
 {
-	const char *at = step->shown->model->asked.linearised_at;
+	const char *at = step->shown->model->request.linearised_at;
 	if (at)
 		fprintf(to, "Linear equations of the deviations from %s.\nThey are %s.\n\n", at, stability_of(step));
 }
 
 void json_point(FILE *to, const struct step *step)
 {
-	const char *at = step->shown->model->asked.linearised_at;
+	const char *at = step->shown->model->request.linearised_at;
 	if (at)
 		fprintf(to, "  \"linearised\": {\"at\": \"%s\", \"stability\": \"%s\"},\n", json_text(at),
 			stability_of(step));

@@ -3,7 +3,7 @@
  * to the next, crossings of breakpoints bracketed to rounding, where the region changes. How the end follows from the
  * start is the product of the exponentials that were passed, and at a crossing where a force jumps of what the jump
  * does to a shift in time (Aizerman and Gantmakher 1958). */
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "report/report.h"
 
@@ -115,11 +115,11 @@ static void take_switching(struct mover *m, const struct switching *s, const str
 		m->rate = fmax(m->rate, rate_of(m->states, m->size, m->A[k]));
 	}
 	m->of = s;
-	m->row = ARRAY(double *, s->expressions + 1);
-	m->row_at = ARRAY(double *, s->expressions + 1);
-	m->limit = ARRAY(double *, s->expressions + 1);
-	for (int e = 0; e < s->expressions; e++) {
-		const struct expression *x = &s->expression[e];
+	m->row = ARRAY(double *, s->functions + 1);
+	m->row_at = ARRAY(double *, s->functions + 1);
+	m->limit = ARRAY(double *, s->functions + 1);
+	for (int e = 0; e < s->functions; e++) {
+		const struct switching_function *x = &s->function[e];
 		m->row[e] = row_of(first, x->row, drive, input);
 		m->row_at[e] = ARRAY(double, m->size);
 		m->limit[e] = ARRAY(double, x->breaks + 1);
@@ -175,7 +175,7 @@ void mover_tune(struct mover *m, double w)
 		m->at[k][s * size + c] = w;
 		m->known[k] = false;
 	}
-	for (int e = 0; e < m->of->expressions; e++) {
+	for (int e = 0; e < m->of->functions; e++) {
 		memcpy(m->row_at[e], m->row[e], sizeof(double) * (size_t)size);
 		m->row_at[e][s] *= -w;
 	}
@@ -232,7 +232,7 @@ static int interval_at(const struct mover *m, int e, const double *z)
 {
 	double value = product(m->size, m->row_at[e], z);
 	int i = 0;
-	while (i < m->of->expression[e].breaks && value > m->limit[e][i])
+	while (i < m->of->function[e].breaks && value > m->limit[e][i])
 		i++;
 	return i;
 }
@@ -240,8 +240,8 @@ static int interval_at(const struct mover *m, int e, const double *z)
 static int region_at(const struct mover *m, const double *z)
 {
 	int region = 0;
-	for (int e = 0; e < m->of->expressions; e++)
-		region += interval_at(m, e, z) * m->of->expression[e].stride;
+	for (int e = 0; e < m->of->functions; e++)
+		region += interval_at(m, e, z) * m->of->function[e].stride;
 	return region;
 }
 
@@ -267,7 +267,7 @@ static double time_outside(struct mover *m, int system, int region, double t, co
 	double *slope = m->work[2], *last = m->work[3], *inside = m->work[4], first = 0;
 	apply(m->size, m->at[system], z, slope);
 	apply(m->size, m->at[system], end, last);
-	for (int e = 0; e < m->of->expressions; e++) {
+	for (int e = 0; e < m->of->functions; e++) {
 		const double *row = m->row_at[e];
 		double at[2];
 		int turns = turns_of(t, product(m->size, row, z), product(m->size, row, slope),
@@ -349,7 +349,7 @@ static void shift(struct mover *m, int before, const double *z, double *M)
 	const struct switching *s = m->of;
 	int region = region_at(m, z), after = s->region[region].system, n = m->states, e = 0;
 	double *f = m->work[0], *jump = m->work[1];
-	while (e < s->expressions - 1 && interval_of(s, region, e) == interval_of(s, before, e))
+	while (e < s->functions - 1 && interval_of(s, region, e) == interval_of(s, before, e))
 		e++;
 	apply(m->size, m->at[s->region[before].system], z, f);
 	apply(m->size, m->at[after], z, jump);

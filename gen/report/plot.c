@@ -124,7 +124,7 @@ static void plot_modes(struct picture *p)
 	int count = shapes_of_step(p->step, &shape, &of);
 	int shown = count < SHAPES ? count : SHAPES;
 	if (of->system.n > LIMIT_SHAPES)
-		error(of->asked.step_at, NULL, "the model has %d coordinates: mode shapes are limited to %d",
+		error(of->request.step_at, NULL, "the model has %d coordinates: mode shapes are limited to %d",
 		      of->system.n, LIMIT_SHAPES);
 	note_first(shown, count, "mode shapes");
 	for (int k = 0; k < shown; k++) {
@@ -295,7 +295,7 @@ static double span_of(const struct step *step)
 		span = fmax(span, im > 0 ? 10 * two_pi / im : re > 0 ? 5 / re : 0);
 	}
 	for (int l = 0; l < system->loads; l++) {
-		double w = fabs(mpq_get_d(system->load[l].wave->w));
+		double w = fabs(mpq_get_d(system->load[l].forcing->w));
 		if (w > 0)
 			span = fmax(span, fmin(5 * two_pi / w, span > 0 ? 10 * span : HUGE_VAL));
 	}
@@ -321,10 +321,10 @@ static void need_responses(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	if (model->switching || has_remainder(step))
-		error(model->asked.step_at, "plrun --plot draws a run of any model",
+		error(model->request.step_at, "plrun --plot draws a run of any model",
 		      "the model is not linear: its response has no closed form that could be drawn");
 	if (model->system.inputs)
-		error(model->asked.step_at, "plrun --plot draws a run with a record",
+		error(model->request.step_at, "plrun --plot draws a run with a record",
 		      "the model has inputs, whose samples are not known: its response cannot be drawn");
 }
 
@@ -352,7 +352,7 @@ static void print_samples(struct picture *p, int count, const int *output)
 		progress("row", (int)k, (int)last);
 		fprintf(p->data, "%.17g", nearest_double(t));
 		for (int i = 0; i < count; i++)
-			fprintf(p->data, " %.17g", started_value(forms[i], form[i], t, false, model->asked.step_at,
+			fprintf(p->data, " %.17g", started_value(forms[i], form[i], t, false, model->request.step_at,
 								 model->output[output[i]].name).value);
 		fputc('\n', p->data);
 		mpq_add(t, t, interval);
@@ -477,7 +477,7 @@ static struct picture picture_of(const struct step *step, const char *list, cons
 		name += length;
 	}
 	if (p.height[0] == 0)
-		error(step->model->asked.step_at, NULL,
+		error(step->model->request.step_at, NULL,
 		      "there is nothing to draw: no output that is linear reacts to an input or a load");
 	return p;
 }

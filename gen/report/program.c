@@ -4,7 +4,7 @@
 #include "model/regions/regions.h"
 #include "report/report.h"
 #include "step/collocation/collocation.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
 #include "step/tapes.h"
@@ -306,7 +306,7 @@ static void print_regions(FILE *to, const struct step *step)
 		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
 		"region\n",
 		step->program->compensated ? "+= (piece.Phi - I)" : "= piece.Phi",
-		s->expressions == 1 ? "the expression" : format("one of %d expressions", s->expressions),
+		s->functions == 1 ? "the switching function" : format("one of %d switching functions", s->functions),
 		step->series.degree);
 	if (step->program->compensated)
 		fprintf(to, "    factors in two words, and what rounding takes from y kept\n");
@@ -325,7 +325,7 @@ static void print_parts(FILE *to, const struct step *step)
 		fprintf(to, "Part %d:", p);
 		for (int i = 0; i < part->model->n; i++)
 			fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
-		if (part->model->switching->expressions > 0) {
+		if (part->model->switching->functions > 0) {
 			fputs(". ", to);
 			print_regions(to, part);
 		} else {
@@ -378,7 +378,7 @@ static const char *chooser_text(const struct step *step, const struct sequence *
 		return "t";
 	if (s->choice == CHOICE_BY_SEQUENCE)
 		return format("%s not 0", sequence_text(step, s->test));
-	const struct divided *d = &step->taylor.divided->expression[s->expression];
+	const struct series_switching *d = &step->taylor.switching->function[s->switching];
 	return format("%s %s %s", sequence_text(step, d->sequence), s->choice == CHOICE_BY_HOLD ? "held at" : "above",
 		      readable_text(d->at[s->breakpoint]));
 }
@@ -427,7 +427,7 @@ static void print_check(FILE *to, const struct step *step)
 {
 	struct step view = *step;
 	view.taylor.expansion = step->event_split->event_check;
-	fprintf(to, "Looked at from both ends, by values and slopes of its expressions; a step that crosses a "
+	fprintf(to, "Looked at from both ends, by values and slopes of its switching functions; a step that crosses a "
 		    "breakpoint in parts, by e^{A tau} of %d numbers:\n", step->event_split->layout.size);
 	print_series(to, &view);
 }
@@ -475,10 +475,10 @@ static void print_reads(FILE *to, const struct step *step)
 {
 	const struct program *program = step->program;
 	const char *states = "", *loads = "";
-	for (int i = 0; i < step->branch->whole->states; i++)
+	for (int i = 0; i < step->branch->full->states; i++)
 		if (program->reads[i])
 			states = format("%s%s %s", states, *states ? "," : "", state_text(step, i));
-	for (int k = 0; k < step->branch->whole->columns; k++)
+	for (int k = 0; k < step->branch->full->columns; k++)
 		if (program->uses[k])
 			loads = format("%s%s %s", loads, *loads ? "," : "", text_of_column(&step->branch->system, k));
 	if (step->model->switching || has_remainder(step))
@@ -519,7 +519,7 @@ void explain_program(FILE *to, const struct step *step)
 						       program->peak_multiplications, program->peak_additions)
 					      : "",
 		step->refresh ? format("; every %d steps %d and %d more", step->refresh->steps,
-				       program->wave_multiplications, program->wave_additions)
+				       program->forcing_multiplications, program->forcing_additions)
 			      : "",
 		step->forced ? "; the state is kept less what its loads sustain" : "");
 }

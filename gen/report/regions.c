@@ -2,7 +2,7 @@
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
 #include "model/contacts/friction.h"
 #include "report/report.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
 #include "step/regions/guards.h"
@@ -26,9 +26,9 @@ static long fast_path_bytes(const struct step *step)
 		halves = halves || step->branch[k].halvings > 0;
 	long off = halves || is_checked_by_tables(step) ? size + 1 : 0;
 	return 8 * s->systems *
-		       (s->expressions * (2 * size + off) +
-			halves * size * 2 * s->expressions) +
-	       28 * (long)s->regions * s->expressions + 8 * (step->regions.event_check.degree + 1);
+		       (s->functions * (2 * size + off) +
+			halves * size * 2 * s->functions) +
+	       28 * (long)s->regions * s->functions + 8 * (step->regions.event_check.degree + 1);
 }
 
 /* Of pieces that are shorter than h, but for what bounds guards */
@@ -38,7 +38,7 @@ static long ladder_bytes(const struct step *step)
 	long size = step->layout.size, rungs = 0;
 	for (int k = 0; k < step->branches; k++)
 		rungs += step->model->params.retuned ? room_for_rungs(step) : step->branch[k].rungs;
-	long rows = words_of(step) > 1 ? 2 * size : size + 1, bounds = has_events(s) ? 0 : s->expressions;
+	long rows = words_of(step) > 1 ? 2 * size : size + 1, bounds = has_events(s) ? 0 : s->functions;
 	return !has_ladder(step) ? 0 : 8 * rungs * (rows + bounds) * size + 8 * (long)step->branches;
 }
 
@@ -48,7 +48,7 @@ static long refresh_bytes(const struct step *step)
 	long numbers = 0;
 	for (int l = 0; l < step->branch->system.loads && step->refresh; l++)
 		if (is_refreshed(step, l))
-			numbers += step->refresh->steps * (1 + oscillates(step->branch->system.load[l].wave));
+			numbers += step->refresh->steps * (1 + oscillates(step->branch->system.load[l].forcing));
 	return 8 * numbers;
 }
 
@@ -56,7 +56,7 @@ static long refresh_bytes(const struct step *step)
  * polynomials of x, corrected */
 static long fast_path_multiplications(const struct step *step)
 {
-	long size = step->layout.size, bounds = step->model->switching->expressions * (12 * size + 60);
+	long size = step->layout.size, bounds = step->model->switching->functions * (12 * size + 60);
 	long moves = 6 * step->regions.event_check.degree * (size * size + size) + 12 * size * size;
 	return !step->regions.event_check.is_made                         ? 0
 	       : step->regions.event_check.fast_path
@@ -73,8 +73,8 @@ static long guard_bytes(const struct step *step)
 	struct guards g = guards_of(step, &pieces);
 	long size = step->layout.size, friction_forces = 8 * size * s->regions * s->transmitted_forces;
 	return 8 * (g.reaches * size + g.rows * (4 * size + 1) + g.guards + g.assignments * words_of(step) * size +
-		    s->expressions -
-		    2 * s->systems * s->expressions * size + (s->segments - 1) * s->expressions) +
+		    s->functions -
+		    2 * s->systems * s->functions * size + (s->segments - 1) * s->functions) +
 	       4 * (6 * g.guards + 2 * s->regions + 1 + g.assignments + g.sets + 1) + friction_forces;
 }
 
@@ -83,11 +83,11 @@ static long bytes_of_regions(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
-	long rows = s->segments * s->expressions * size;
-	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->expressions * size)) +
-		     4 * (s->regions + s->expressions + matrices);
+	long rows = s->segments * s->functions * size;
+	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->functions * size)) +
+		     4 * (s->regions + s->functions + matrices);
 	if (step->regions.event_check.is_made && step->model->params.retuned)
-		bytes += 8 * (matrices * (s->expressions * (size + 1) + step->layout.states + 1) +
+		bytes += 8 * (matrices * (s->functions * (size + 1) + step->layout.states + 1) +
 			      edges_of_regions(s));
 	return bytes + ladder_bytes(step) + (step->regions.event_check.fast_path ? fast_path_bytes(step) : 0) +
 	       (has_events(s) ? guard_bytes(step) : 0);
@@ -103,35 +103,37 @@ static long most_of_regions(const struct step *step)
 	pieces += max_events(step->model) + 1;
 	long two_words = (words_of(step) - 1) * (12 * size * size + 3 * size);
 	return pieces * (products_of_piece(step) + degree * (size * size + 2 * size) +
-			 (degree + 1) * s->expressions * (size + 6) + two_words) +
+			 (degree + 1) * s->functions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
-		       (2 * max_splits(step->model) + 4 * s->expressions * pieces + 64 * max_events(step->model)) +
+		       (2 * max_splits(step->model) + 4 * s->functions * pieces + 64 * max_events(step->model)) +
 	       fast_path_multiplications(step);
 }
 
 /* ---- for a person ---- */
 
-static void text_expressions(FILE *to, const struct step *step)
+static void text_switching_functions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	for (int i = 0; i < s->expressions; i++)
-		fprintf(to, "    expression %d: %s%s breakpoints %s\n", i, spoken_expression(step->shown->model, i),
-			s->expression[i].segments > 1 ? ";" : ",",
-			breakpoints_text(s->expression[i].breaks, (const mpq_t *)s->expression[i].at));
+	for (int i = 0; i < s->functions; i++)
+		fprintf(to, "    switching function %d: %s%s breakpoints %s\n", i,
+			text_of_function(step->shown->model, i),
+			s->function[i].segments > 1 ? ";" : ",",
+			breakpoints_text(s->function[i].breaks, (const mpq_t *)s->function[i].at));
 }
 
 /* What chooses formulas by the state, of a series */
-void text_divided(FILE *to, const struct step *step)
+void text_series_switching(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->taylor.divided;
-	const char *ends = step->event_split ? "a step goes on with others where an expression passes a breakpoint"
-				     : format("%s ends where an expression passes a breakpoint",
+	const struct expansion *x = step->taylor.switching;
+	const char *ends = step->event_split
+		? "a step goes on with others where a switching function passes a breakpoint"
+				     : format("%s ends where a switching function passes a breakpoint",
 					      step->collocation ? "an internal step" : "a series");
 	fprintf(to, "The state chooses formulas; %s, at most %d times%s:\n", ends, max_events(step->model),
 		step->event_split ? "" : " in a step");
-	for (int i = 0; i < x->expressions; i++)
-		fprintf(to, "    expression %d: %s, breakpoints %s\n", i, divided_text(step, i),
-			rising_text(&x->expression[i]));
+	for (int i = 0; i < x->functions; i++)
+		fprintf(to, "    switching function %d: %s, breakpoints %s\n", i, series_switching_text(step, i),
+			rising_text(&x->function[i]));
 	text_contacts(to, step);
 }
 
@@ -141,9 +143,10 @@ const char *frictions_text(const struct switching *s, const char *indent)
 	for (int i = 0, shown = 0; i < s->frictions; i++) {
 		const struct node *node = s->friction[i].atom->node;
 		if (!is_repeated(s, i))
-			text = format("%s%sfriction %d: %s; sticks in interval %d of expression %d\n", text, indent,
+			text = format("%s%sfriction %d: %s; sticks in interval %d of switching function %d\n", text,
+				      indent,
 				      shown++, text_between(node->start, node->end), stick_of(s, &s->friction[i]),
-				      s->friction[i].expression);
+				      s->friction[i].function);
 	}
 	for (int i = 0; i < s->sliders; i++)
 		if (!is_repeated_slider(s, i))
@@ -154,7 +157,7 @@ const char *frictions_text(const struct switching *s, const char *indent)
 static void text_intervals(FILE *to, const struct switching *s, int region)
 {
 	fputs(" (intervals", to);
-	for (int i = 0; i < s->expressions; i++)
+	for (int i = 0; i < s->functions; i++)
 		fprintf(to, " %d", interval_of(s, region, i));
 	fprintf(to, "%s): matrix %d\n",
 		s->segments > 1 ? format("; segment %d of time", segment_of_region(s, region) + 1) : "",
@@ -181,9 +184,9 @@ static void text_impacts(FILE *to, const struct model *model)
 		const struct impact *impact = &model->contacts.impact[i];
 		fprintf(to, "    impact %d: %s", i, text_between(impact->when->at, impact->when->end));
 		if (impact->bounces)
-			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of expression %d",
+			fprintf(to, "; a bounce of restitution %s, which rests in interval %d of switching function %d",
 				restitution_text(model, impact), rest_of(model->switching, 0, impact),
-				impact->in->expression);
+				impact->in->function);
 		fputs("\n", to);
 	}
 }
@@ -195,11 +198,11 @@ static void text_of_one_part(FILE *to, const struct step *step)
 		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
 		"is correctly rounded.\n",
 		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
-	text_expressions(to, step);
+	text_switching_functions(to, step);
 	fputs(frictions_text(s, "    "), to);
 	text_impacts(to, step->shown->model);
 	if (s->sharing)
-		fprintf(to, "Coordinates move as a whole: %d independent parts have their regions together.\n",
+		fprintf(to, "Rigid-body modes: %d independent parts have their regions together.\n",
 			s->sharing);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
@@ -212,28 +215,28 @@ static void text_of_one_part(FILE *to, const struct step *step)
 		most_of_regions(step));
 }
 
-static void text_part(FILE *to, const struct step *whole, int index)
+static void text_part(FILE *to, const struct step *full, int index)
 {
-	const struct switching *all = whole->model->switching;
+	const struct switching *all = full->model->switching;
 	const struct region_part *part = &all->part[index];
 	const struct switching *s = part->model->switching;
 	fprintf(to, "    part %d:", index);
 	for (int i = 0; i < part->model->n; i++)
 		fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
-	if (s->expressions == 0) {
+	if (s->functions == 0) {
 		fputs("; linear\n", to);
 		return;
 	}
-	fputs("; expressions", to);
-	for (int i = 0; i < s->expressions; i++)
-		fprintf(to, "%s %d", i ? "," : "", part->expression[i]);
+	fputs("; switching functions", to);
+	for (int i = 0; i < s->functions; i++)
+		fprintf(to, "%s %d", i ? "," : "", part->function[i]);
 	fprintf(to, "; %d regions, %d of them different\n", possible_regions(s), s->systems);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible) {
 			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
 			text_intervals(to, s, r);
 		}
-	text_way(to, whole->regions.part[index], "        A step of it");
+	text_way(to, full->regions.part[index], "        A step of it");
 }
 
 static void text_parts(FILE *to, const struct step *step)
@@ -243,7 +246,7 @@ static void text_parts(FILE *to, const struct step *step)
 		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
 		"approximated, every constant is correctly rounded.\n",
 		step->regions.parts);
-	text_expressions(to, step);
+	text_switching_functions(to, step);
 	for (int p = 0; p < step->regions.parts; p++) {
 		text_part(to, step, p);
 		bytes += bytes_of_regions(step->regions.part[p]);
@@ -262,7 +265,7 @@ void text_regions(FILE *to, const struct step *step)
 
 /* ---- JSON ---- */
 
-static void json_expression(FILE *to, int i, const char *text, int breaks, mpq_t *at)
+static void json_function(FILE *to, int i, const char *text, int breaks, mpq_t *at)
 {
 	SCRATCH double *rounded = ARRAY(double, breaks);
 	for (int k = 0; k < breaks; k++)
@@ -272,13 +275,13 @@ static void json_expression(FILE *to, int i, const char *text, int breaks, mpq_t
 	fputs("}", to);
 }
 
-static void json_expressions(FILE *to, const struct step *step)
+static void json_switching_functions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	fputs("  \"expressions\": [", to);
-	for (int i = 0; i < s->expressions; i++)
-		json_expression(to, i, spoken_expression(step->shown->model, i), s->expression[i].breaks,
-				s->expression[i].at);
+	for (int i = 0; i < s->functions; i++)
+		json_function(to, i, text_of_function(step->shown->model, i), s->function[i].breaks,
+				s->function[i].at);
 	fputs("],\n", to);
 }
 
@@ -294,7 +297,7 @@ static void json_frictions(FILE *to, const struct switching *s)
 	for (int i = 0; i < s->frictions; i++)
 		if (!is_repeated(s, i))
 			fprintf(to, "%s{\"expression\": %d, \"sticks\": %d}", i ? ", " : "",
-				s->friction[i].expression, stick_of(s, &s->friction[i]));
+				s->friction[i].function, stick_of(s, &s->friction[i]));
 	fputs("],\n", to);
 }
 
@@ -307,7 +310,7 @@ static void json_sliders(FILE *to, const struct switching *s)
 		int slides = slides_of(s, i, &slide);
 		for (int k = 0; k < slides; k++, between = ", ")
 			fprintf(to, "%s{\"expressions\": [%d, %d], \"upward\": [%s, %s]}", between,
-				slide[k]->expression[0], slide[k]->expression[1],
+				slide[k]->function[0], slide[k]->function[1],
 				slide[k]->upward[0] ? "true" : "false", slide[k]->upward[1] ? "true" : "false");
 	}
 	fputs("],\n", to);
@@ -319,7 +322,7 @@ static void json_impacts(FILE *to, const struct model *model)
 	for (int i = 0; i < model->contacts.impacts; i++) {
 		const struct impact *impact = &model->contacts.impact[i];
 		fprintf(to, "%s{\"expression\": %d, \"upward\": %s, \"restitution\": ", i ? ", " : "",
-			impact->in->expression, impact->in->upward ? "true" : "false");
+			impact->in->function, impact->in->upward ? "true" : "false");
 		if (impact->bounces)
 			fprintf(to, "%.17g, \"rests\": %d}", nearest_double(impact->in->restitution),
 				rest_of(model->switching, 0, impact));
@@ -335,7 +338,7 @@ static void json_region_list(FILE *to, const struct switching *s, const struct r
 {
 	const char *next = part ? "" : "\n    ", *between = part ? ", " : ",\n    ";
 	fputs("\"regions\": [", to);
-	for (int r = 0; r < s->regions && (s->expressions > 0 || !part); r++) {
+	for (int r = 0; r < s->regions && (s->functions > 0 || !part); r++) {
 		if (!s->region[r].possible)
 			continue;
 		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", next,
@@ -352,8 +355,8 @@ static void json_part(FILE *to, const struct switching *all, int index)
 	fprintf(to, "%s\n    {", index ? "," : "");
 	json_names(to, "coordinates", part->model->n, part->model->names.coord);
 	fputs(", \"expressions\": [", to);
-	for (int i = 0; i < s->expressions; i++)
-		fprintf(to, "%s%d", i ? ", " : "", part->expression[i]);
+	for (int i = 0; i < s->functions; i++)
+		fprintf(to, "%s%d", i ? ", " : "", part->function[i]);
 	fputs("],\n     ", to);
 	json_region_list(to, s, part, all);
 	fputs("]}", to);
@@ -362,7 +365,7 @@ static void json_part(FILE *to, const struct switching *all, int index)
 void json_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
-	json_expressions(to, step);
+	json_switching_functions(to, step);
 	if (s->frictions > 0)
 		json_frictions(to, s);
 	if (s->sliders > 0)
@@ -380,13 +383,13 @@ void json_regions(FILE *to, const struct step *step)
 		json_part(to, s, p);
 	fputs("],\n", to);
 }
-void json_divided(FILE *to, const struct step *step)
+void json_series_switching(FILE *to, const struct step *step)
 {
-	const struct expansion *x = step->taylor.divided;
+	const struct expansion *x = step->taylor.switching;
 	fputs("  \"expressions\": [", to);
-	for (int i = 0; i < x->expressions; i++)
-		json_expression(to, i, json_text(divided_text(step, i)), x->expression[i].breaks,
-				rising_breakpoints(&x->expression[i]));
+	for (int i = 0; i < x->functions; i++)
+		json_function(to, i, json_text(series_switching_text(step, i)), x->function[i].breaks,
+				rising_breakpoints(&x->function[i]));
 	fputs("],\n", to);
 	json_contacts(to, step);
 }

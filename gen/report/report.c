@@ -2,7 +2,7 @@
 /* Poles and polynomials as a reader wants to see them: good to the printed digits, in a fixed order. */
 #include "model/linear/relative.h"
 #include "report/report.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/linear/images.h"
 
 #include <math.h>
@@ -132,7 +132,7 @@ const char *breakpoints_text(int count, const mpq_t *at)
 	return text;
 }
 
-const char *rising_text(const struct divided *d)
+const char *rising_text(const struct series_switching *d)
 {
 	return breakpoints_text(d->breaks, (const mpq_t *)rising_breakpoints(d));
 }

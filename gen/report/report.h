@@ -9,7 +9,7 @@ struct pole_report;
 struct step;
 struct irrationals;
 struct model;
-struct divided;
+struct series_switching;
 struct switching;
 struct alternative;
 struct requirement;
@@ -35,7 +35,7 @@ void json_names(FILE *to, const char *key, int count, const char *const *name); 
 void json_matrix(FILE *to, const char *indent, const char *key, int rows, int columns, int stride, const double *value);
 void json_rationals(FILE *to, const char *indent, const char *key, int rows, int columns, const mpq_t *value);
 const char *breakpoints_text(int count, const mpq_t *at);   /* 1, 2 */
-const char *rising_text(const struct divided *d);           /* likewise */
+const char *rising_text(const struct series_switching *d);           /* likewise */
 
 /* ---- units.c: of what is shown ---- */
 
@@ -65,8 +65,8 @@ void json_reach(FILE *to, const struct step *step);
 const char *frictions_text(const struct switching *s, const char *indent);
 void text_regions(FILE *to, const struct step *step);       /* of a model of straight pieces */
 void json_regions(FILE *to, const struct step *step);        /* members of an object */
-void text_divided(FILE *to, const struct step *step);       /* of a series */
-void json_divided(FILE *to, const struct step *step);        /* members of an object */
+void text_series_switching(FILE *to, const struct step *step); /* of a series */
+void json_series_switching(FILE *to, const struct step *step); /* members of an object */
 
 /* ---- contacts.c: what is held beside a series, and what strikes ---- */
 
@@ -99,7 +99,8 @@ void json_needs(FILE *to, const struct step *step);          /* members of an ob
 /* of those that are kept, or of the others: 1-4, 6 */
 const char *mode_numbers(const struct modal_truncation *s, bool kept);
 int  modes_of_model(const struct modal_truncation *s);      /* how many it has, dropped ones too */
-const char *loss_text(const struct model *model, int output); /* tip 3.2e-05: at most, by the start and the loads */
+/* tip 3.2e-05: at most, by the start and the loads */
+const char *truncation_text(const struct model *model, int output);
 const char *static_correction_text(const struct model *model); /* what dropped modes still do */
 void text_modal_truncation(FILE *to, const struct model *model);
 void json_modal_truncation(FILE *to, const struct model *model); /* members of an object */
@@ -246,7 +247,7 @@ void print_page(FILE *to, const struct step *step, const char *options);    /* H
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 
 void explain_text(FILE *to, const struct step *step);
-void text_equations(FILE *to, const struct step *step);     /* as written, and what a sketch or a scene means */
+void text_equations(FILE *to, const struct step *step);     /* as written, and what a network or an assembly means */
 void text_course(FILE *to, const struct step *step);        /* what is exact, and what is done with what is not */
 void text_cost(FILE *to, const struct step *step);          /* and how far a step may be off */
 void explain_json(FILE *to, const struct step *step);

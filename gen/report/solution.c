@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. That of a
  * piecewise-linear model goes from crossing to crossing. */
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "report/report.h"
 #include "step/linear/images.h"
@@ -12,7 +12,7 @@
 
 static void check_outputs(const struct model *model)
 {
-	refuse(CAN_SOLUTION, model, model->asked.end_at);
+	refuse(CAN_SOLUTION, model, model->request.end_at);
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start,
@@ -22,7 +22,7 @@ static void check_outputs(const struct model *model)
 		/* the rate of what a stop, friction or another piecewise linear term acts on */
 		if (model->switching &&
 		    !rationals_zero((size_t)model->remainder.force_columns, model->output[j].force_column))
-			error(model->output[j].value ? model->output[j].value->start : model->asked.end_at,
+			error(model->output[j].value ? model->output[j].value->start : model->request.end_at,
 			      "positions, velocities and loads have one formula in all of them",
 			      "output '%s' has another formula in each region, which --solution does not print",
 			      model->output[j].name);
@@ -35,7 +35,7 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	mpq_div(steps, end, model->h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	if (mpz_cmp_ui(last, LIMIT_ROWS) >= 0)
-		error(model->asked.end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
+		error(model->request.end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
 	unsigned long rows = mpz_get_ui(last);
 	return rows;
 }
@@ -90,8 +90,8 @@ static bool print_passed(struct printing *p, const struct trajectory *t)
 			return false;
 		}
 		fprintf(p->to, "# t = %.17g: %s passes %s %s\n", when,
-			spoken_expression(p->model, now->expression),
-			readable_text(p->model->switching->expression[now->expression].at[now->breakpoint]),
+			text_of_function(p->model, now->function),
+			readable_text(p->model->switching->function[now->function].at[now->breakpoint]),
 			now->upward ? "upward" : "downward");
 	}
 	return true;
@@ -110,7 +110,7 @@ static bool print_row(struct printing *p, const struct trajectory *t, mpq_srcptr
 			return false;
 		}
 		if (!isfinite(value[j]))
-			error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+			error(model->request.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
 			      model->output[j].name, readable_text(time));
 	}
 	fprintf(p->to, "%.17g", nearest_double(time));
@@ -155,7 +155,7 @@ static void print_trajectory(FILE *to, const struct model *model, unsigned long 
 		before = p.why;
 		if (2 * bits > MOST_BITS || equal == EQUAL) {
 			progress_end();
-			error(model->asked.end_at, "until then it is known: a shorter --solution prints it", "%s",
+			error(model->request.end_at, "until then it is known: a shorter --solution prints it", "%s",
 			      p.why);
 		}
 	}
@@ -186,9 +186,9 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
 			struct coefficient value = started_value(form[j].count, form[j].list, t, false,
-								 model->asked.step_at, model->output[j].name);
+								 model->request.step_at, model->output[j].name);
 			if (!isfinite(value.value))
-				error(model->asked.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+				error(model->request.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
 				      model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}

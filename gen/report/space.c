@@ -94,13 +94,13 @@ static struct space space_of(const struct model *model)
 static double *held_matrix(const struct space *s)
 {
 	int size = s->states + s->drives;
-	RATIONALS *whole = rationals((size_t)(size * size));
+	RATIONALS *full = rationals((size_t)(size * size));
 	double *held = ARRAY(double, (size_t)(size * size));
 	for (int i = 0; i < s->states; i++)
 		for (int j = 0; j < size; j++)
-			mpq_set(whole[i * size + j], j < s->states ? s->A[i * s->states + j]
+			mpq_set(full[i * size + j], j < s->states ? s->A[i * s->states + j]
 								   : s->B[i * s->drives + j - s->states]);
-	struct taylor *t = taylor_of(size, whole, s->model->h);
+	struct taylor *t = taylor_of(size, full, s->model->h);
 	if (!taylor_enclose(t, 128))
 		return NULL;
 	INTERVAL value = OVER_BITS(192);

@@ -139,7 +139,8 @@ static int roots_of(const struct model *model, const struct transfer *t, struct 
 	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
 	if (!spectrum_refine(spectrum, 128))
-		error(model->asked.step_at, NULL, "two zeros or poles of %s over %s are too close to each other to be "
+		error(model->request.step_at, NULL,
+		      "two zeros or poles of %s over %s are too close to each other to be "
 						  "told apart", t->output, t->drive);
 	if (spectrum->zero)
 		add_zero(&(*list)[count++], NULL, spectrum->zero, false);

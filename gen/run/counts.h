@@ -2,7 +2,7 @@
 /* Behind plrt.h, before the C of a model that is counted (count.c): what has run so far, as step/cost.c counts it.
  * Quotients are products, a call is one of <math.h>. Of what the runtime does with arrays it is an estimate. */
 static struct {
-	uint64_t multiplications, additions, calls, waves;
+	uint64_t multiplications, additions, calls, forcings;
 } pl_counted;
 const void *const pl_counts = &pl_counted;
 
@@ -14,8 +14,8 @@ const void *const pl_counts = &pl_counted;
 #define PL_TAKES(m, a) (pl_counted.multiplications += (uint64_t)(m), pl_counted.additions += (uint64_t)(a))
 #define PL_TAKES_BOTH(count) PL_TAKES(count, count)
 
-#define pl_cossin(a, z) (pl_counted.waves++, PL_TAKES(PL_COSSIN_MUL, PL_COSSIN_ADD), pl_cossin(a, z))
-#define pl_cossinf(a, z) (pl_counted.waves++, PL_TAKES(PL_COSSINF_MUL, PL_COSSINF_ADD), pl_cossinf(a, z))
+#define pl_cossin(a, z) (pl_counted.forcings++, PL_TAKES(PL_COSSIN_MUL, PL_COSSIN_ADD), pl_cossin(a, z))
+#define pl_cossinf(a, z) (pl_counted.forcings++, PL_TAKES(PL_COSSINF_MUL, PL_COSSINF_ADD), pl_cossinf(a, z))
 #define pl_growth_value(a) (PL_TAKES(PL_GROWTH_MUL, PL_GROWTH_ADD), pl_growth_value(a))
 #define pl_growthf_value(a) (PL_TAKES(PL_GROWTHF_MUL, PL_GROWTHF_ADD), pl_growthf_value(a))
 #define pl_accumulate(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulate(sum, term, small, rest))

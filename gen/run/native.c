@@ -50,12 +50,12 @@ static char *model_text(const struct step *step, enum running_with with)
 	struct step tangent = *step;
 	struct model model = *step->model;
 	struct printing p;
-	model.asked.batch = model.asked.selftest = false;
+	model.request.batch = model.request.selftest = false;
 	tangent.model = &model;
 	start_text(&p);
 	emit_code(p.to, &tangent, "", NULL, with & WITH_RHS);
 	char *text = rewritten(text_printed(&p), print_included, model.name);
-	if (model.asked.single)
+	if (model.request.single)
 		text = rewritten(text, print_single, model.name);
 	text = rewritten(text, print_apart, model.name);
 	return with & WITH_COUNTS ? rewritten(text, print_counts, model.name) : text;
@@ -95,7 +95,7 @@ static char *text_of(const struct step *step, enum running_with with)
 	fputs(math_prototypes, p.to);
 	print_header(p.to, "plrt.h");
 	if (with & WITH_COUNTS) {
-		fprintf(p.to, "typedef %s pl_real;\n", step->model->asked.single ? "float" : "double");
+		fprintf(p.to, "typedef %s pl_real;\n", step->model->request.single ? "float" : "double");
 		print_text_of(p.to, "counts.h");
 		fputs(math_counts, p.to);
 	}

@@ -18,10 +18,10 @@ extern const char math_prototypes[], math_counts[];         /* C: of <math.h>; t
 /* ---- native.c: compiled into memory ---- */
 
 enum running_with { WITH_RHS = 1, WITH_COUNTS = 2 };        /* NAME_rhs; counts of what is done */
-/* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>, a wave is cos and
- * sin of the runtime, whose sums and products are counted too. Of what the runtime does with arrays it is an
+/* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>, a forcing term is
+ * cos and sin of the runtime, whose sums and products are counted too. Of what the runtime does with arrays it is an
  * estimate. */
-struct counted { uint64_t multiplications, additions, calls, waves; };
+struct counted { uint64_t multiplications, additions, calls, forcings; };
 struct native {
 	const void *model, *rhs;    /* the descriptor; NULL: without */
 	const struct counted *counted;

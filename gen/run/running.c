@@ -31,14 +31,14 @@ struct running *running_new(struct place at, const struct step *step, enum runni
 {
 	const struct model *model = step->model;
 	struct opening o = { at, step, with, { 0 } };
-	(model->asked.single ? target_float : target_double)();
+	(model->request.single ? target_float : target_double)();
 	*why = unheard_refusal_of(open_native, &o);
 	if (*why)
 		return NULL;
 	struct running *r = NEW(struct running);
 	*r = (struct running){ .step = step, .native = o.native,
 			       .states = model->written->system.states, .inputs = model->system.inputs,
-			       .outputs = model->outputs, .single = model->asked.single };
+			       .outputs = model->outputs, .single = model->request.single };
 	r->instance = allocate(1, CALL(r, size));
 	r->y = ARRAY(double, r->states + 1);
 	r->u = ARRAY(double, 2 * (size_t)r->inputs + 1);
@@ -184,7 +184,7 @@ static double instructions_between(const struct step *step, struct counted from,
 	return instructions_of(step, (struct operations){ (double)(to.multiplications - from.multiplications),
 							  (double)(to.additions - from.additions),
 							  (double)(to.calls - from.calls),
-							  (double)(to.waves - from.waves) });
+							  (double)(to.forcings - from.forcings) });
 }
 
 struct board_cost board_cost_of(struct place at, const struct step *step)

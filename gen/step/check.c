@@ -50,7 +50,7 @@ static void check_tables(struct check *c)
 		for (int t = 0; t < step->tables; t++)
 			check_table(c, step->branch[k].table[t]);
 	}
-	check_table(c, step->branch->whole);
+	check_table(c, step->branch->full);
 }
 
 /* ---- a list of assignments ---- */
@@ -62,7 +62,7 @@ static int operands_of(const struct table *table, enum operand_kind kind)
 
 static void check_operand(const struct check *c, const struct product *p)
 {
-	const struct table *table = c->step->branch->whole;
+	const struct table *table = c->step->branch->full;
 	int columns = operands_of(table, p->operand.kind);
 	need(c, p->factor, "a term without its factor");
 	need(c, among(p->operand.index, columns), "a term whose operand is out of range");
@@ -74,7 +74,7 @@ static void check_operand(const struct check *c, const struct product *p)
 
 static void check_assignment(const struct check *c, const struct assignment *a)
 {
-	const struct table *table = c->step->branch->whole;
+	const struct table *table = c->step->branch->full;
 	need(c, among(a->target, table->states), "its target is out of range");
 	need(c, among(a->terms, table->states + table->columns + table->inputs + 1),
 	     "its number of terms is out of range");
@@ -87,7 +87,7 @@ static void check_assignment(const struct check *c, const struct assignment *a)
 
 static void check_group(const struct check *c, const struct group *g, bool *stepped)
 {
-	const struct table *table = c->step->branch->whole;
+	const struct table *table = c->step->branch->full;
 	need(c, g->kind == GROUP_ALIKE || g->blocks == 1, "several blocks where there is one");
 	for (int i = 0; i < g->states * g->blocks; i++) {
 		need(c, among(g->state[i], table->states), "a state that is out of range");
@@ -103,7 +103,7 @@ static void check_group(const struct check *c, const struct group *g, bool *step
 /* Every state stands in one group, and nothing acts from the one on the other. */
 static void check_groups(struct check *c)
 {
-	const struct table *table = c->step->branch->whole;
+	const struct table *table = c->step->branch->full;
 	bool *stepped = ARRAY(bool, table->states);
 	for (int k = 0; k < c->program->groups; k++) {
 		c->where = format("group %d", k);
@@ -116,7 +116,7 @@ static void check_groups(struct check *c)
 static void check_list(struct check *c)
 {
 	const struct program *program = c->program;
-	bool *written = ARRAY(bool, c->step->branch->whole->states);
+	bool *written = ARRAY(bool, c->step->branch->full->states);
 	for (int i = 0; i < program->assignments; i++) {
 		const struct assignment *a = &program->assignment[i];
 		c->where = format("assignment %d", i);

@@ -60,7 +60,7 @@ static struct cost cost_of_forms(const struct step *step, int count, const struc
 /* Functions of a load: cos and sin together, e^{a t} */
 static struct cost functions_of_load(const struct load *load, bool single)
 {
-	bool turns = oscillates(load->wave), grows = mpq_sgn(load->wave->a) != 0;
+	bool turns = oscillates(load->forcing), grows = mpq_sgn(load->forcing->a) != 0;
 	return (struct cost){ turns * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
 				      grows * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL),
 			      turns * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
@@ -78,8 +78,8 @@ static bool is_used(const struct program *program, const struct load *load, int 
 /* Powers of t times functions, and growths times cos and sin */
 static int products_of_load(const struct load *load)
 {
-	bool grows = mpq_sgn(load->wave->a) != 0;
-	return oscillates(load->wave) ? 2 * (load->powers - 1) + 2 * grows
+	bool grows = mpq_sgn(load->forcing->a) != 0;
+	return oscillates(load->forcing) ? 2 * (load->powers - 1) + 2 * grows
 	       : load->powers > 1     ? load->powers - 2 + grows
 				      : 0;
 }
@@ -87,7 +87,7 @@ static int products_of_load(const struct load *load)
 /* ... and what turns the load states of a refresh into those of now */
 static struct cost turning_of_load(const struct load *load)
 {
-	bool turns = oscillates(load->wave);
+	bool turns = oscillates(load->forcing);
 	return (struct cost){ (turns ? 4 : 1) + (turns ? 2 : 1) * (load->powers - 1), 2 * turns, 0 };
 }
 
@@ -100,15 +100,15 @@ void count_loads(struct program *program, const struct step *step)
 		if (!is_used(program, load, column) && !is_refreshed(step, l))
 			continue;
 		*(is_refreshed(step, l) ? &refreshed : &program->multiplications) += products_of_load(load);
-		struct cost functions = functions_of_load(load, step->model->asked.single);
-		program->wave_multiplications += functions.multiplications;
-		program->wave_additions += functions.additions;
+		struct cost functions = functions_of_load(load, step->model->request.single);
+		program->forcing_multiplications += functions.multiplications;
+		program->forcing_additions += functions.additions;
 	}
-	program->wave_multiplications += refreshed;
+	program->forcing_multiplications += refreshed;
 	if (step->refresh)
 		return;
-	program->multiplications += program->wave_multiplications;
-	program->additions += program->wave_additions;
+	program->multiplications += program->forcing_multiplications;
+	program->additions += program->forcing_additions;
 }
 
 void count_rotated_loads(struct program *program, const struct step *step)
@@ -152,25 +152,25 @@ static struct cost cost_of_outputs(const struct step *step, bool (*counts)(const
 static void cost_load(struct cost *cost, const struct step *step, int l, bool rotated)
 {
 	const struct load *load = &step->branch->system.load[l];
-	add_cost(cost, 1, rotated ? turning_of_load(load) : functions_of_load(load, step->model->asked.single));
+	add_cost(cost, 1, rotated ? turning_of_load(load) : functions_of_load(load, step->model->request.single));
 	cost->multiplications += rotated ? 0 : products_of_load(load);
 }
 
 /* Of the loads whose functions a step evaluates, in the mean over the steps to a refresh */
-static int waves_of(const struct step *step)
+static int forcings_of(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
-	int waves = 0;
+	int forcings = 0;
 	for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
-		waves += oscillates(system->load[l].wave) && is_used(step->program, &system->load[l], column);
-	return waves;
+		forcings += oscillates(system->load[l].forcing) && is_used(step->program, &system->load[l], column);
+	return forcings;
 }
 
 double cost_of_step(const struct step *step, const struct target *target)
 {
 	const struct model *model = step->model;
 	const struct program *program = step->program;
-	const bool single = model->asked.single;
+	const bool single = model->request.single;
 	const int refresh = step->refresh ? step->refresh->steps : 1;
 	struct cost cost = { program->multiplications, program->additions, 0 };
 	bool *reads = ARRAY(bool, (size_t)step->branch->system.loads);
@@ -182,26 +182,26 @@ double cost_of_step(const struct step *step, const struct target *target)
 		add_cost(&cost, 1, cost_of_outputs(step, is_row, reads));
 	double multiplications = cost.multiplications, additions = cost.additions;
 	if (step->refresh) {
-		multiplications += (double)program->wave_multiplications / refresh;
-		additions += (double)program->wave_additions / refresh;
+		multiplications += (double)program->forcing_multiplications / refresh;
+		additions += (double)program->forcing_additions / refresh;
 	}
 	if (!target)
 		return (multiplications + additions) * (single ? 1 : 2);
 	return target->cost[single].multiplication * multiplications + target->cost[single].addition * additions +
-	       target->cost[single].wave * waves_of(step) / refresh + target->cost[single].step;
+	       target->cost[single].forcing * forcings_of(step) / refresh + target->cost[single].step;
 }
 
 /* Fitted as those of needs.c; in float the search for events goes by loops over arrays. */
 double instructions_of(const struct step *step, struct operations of)
 {
-	static const struct { double multiplication, addition, searched, wave, call, step; } each[2] = {
+	static const struct { double multiplication, addition, searched, forcing, call, step; } each[2] = {
 		{ 58, 78, 0, 1970, 1180, 0 }, { 1.5, 1.5, 20, 110, 67, 12 }
 	};
-	const bool single = step->model->asked.single, searched = single && step->model->switching;
-	const double m = of.multiplications - of.waves * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL);
-	const double a = of.additions - of.waves * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD);
+	const bool single = step->model->request.single, searched = single && step->model->switching;
+	const double m = of.multiplications - of.forcings * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL);
+	const double a = of.additions - of.forcings * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD);
 	return (searched ? each[1].searched * (m + a) : each[single].multiplication * m + each[single].addition * a) +
-	       each[single].wave * of.waves + each[single].call * of.calls + each[single].step;
+	       each[single].forcing * of.forcings + each[single].call * of.calls + each[single].step;
 }
 
 const char *two_digits(double count)
@@ -216,7 +216,7 @@ double instructions_of_linear(const struct step *step)
 {
 	const struct program *program = step->program;
 	return instructions_of(step, (struct operations){ program->multiplications, program->additions, program->calls,
-							  waves_of(step) });
+							  forcings_of(step) });
 }
 
 void count_peaks(struct step *step)
@@ -257,11 +257,11 @@ void count_regions(struct step *step, int multiplications, int additions)
 	for (int l = 0; l < system->loads; l++) {
 		if (step->layout.load[l] < 0)
 			continue;
-		add_cost(&functions, 1, functions_of_load(&system->load[l], step->model->asked.single));
+		add_cost(&functions, 1, functions_of_load(&system->load[l], step->model->request.single));
 		multiplications += products_of_load(&system->load[l]);
 	}
-	program->wave_multiplications = functions.multiplications;
-	program->wave_additions = functions.additions;
+	program->forcing_multiplications = functions.multiplications;
+	program->forcing_additions = functions.additions;
 	program->multiplications = multiplications + functions.multiplications;
 	program->additions = additions + functions.additions;
 }
@@ -510,20 +510,20 @@ static void mark_loads_read(const struct step *step, struct program *program)
 	struct reads r = reads_of(step->model, split->functions - 1, form);
 	for (int l = 0, column = 0; l < system->loads; l++) {
 		bool read = r.load[l];
-		for (int k = 0; k < split->waves; k++)
-			read = read || split->wave[k].wave == system->load[l].wave;
+		for (int k = 0; k < split->forcings; k++)
+			read = read || split->forcing[k].forcing == system->load[l].forcing;
 		for (int k = 0; k < system->load[l].columns; k++, column++)
 			program->uses[column] = program->uses[column] || read;
 	}
 }
 
-/* What waves add to eta and eta' of each mode: cos and sin, or e^{a t} alone */
-static int wave_products(const struct step *step)
+/* What forcing terms add to eta and eta' of each mode: cos and sin, or e^{a t} alone */
+static int forcing_products(const struct step *step)
 {
 	const struct splitting *split = step->model->remainder.split;
 	int values = 0;
-	for (int k = 0; k < split->waves; k++)
-		values += oscillates(split->wave[k].wave) ? 2 : 1;
+	for (int k = 0; k < split->forcings; k++)
+		values += oscillates(split->forcing[k].forcing) ? 2 : 1;
 	return 2 * step->normal->modes * values;
 }
 
@@ -568,7 +568,7 @@ void count_normal(const struct step *step, struct program *program)
 	add_cost(&force, -1, c);
 	add_cost(&force, split->rests, (struct cost){ n + 1, n, 0 });
 	add_cost(&c, evaluations, force);
-	add_cost(&c, wave_products(step) + n * (3 * points + 6), (struct cost){ 1, 1, 0 });
+	add_cost(&c, forcing_products(step) + n * (3 * points + 6), (struct cost){ 1, 1, 0 });
 	set_cost(program, c);
 	mark_loads_read(step, program);
 	count_loads(program, step);

@@ -20,8 +20,9 @@ void count_rotated_loads(struct program *program, const struct step *step);
 void count_regions(struct step *step, int multiplications, int additions);
 /* a step, and its outputs where they are linear: instructions; without a target operations, those of double twice */
 double cost_of_step(const struct step *step, const struct target *target);
-/* as they were counted; calls: of <math.h>; waves: of pl_cossin, whose sums and products are among the others */
-struct operations { double multiplications, additions, calls, waves; };
+/* as they were counted; calls: of <math.h>; forcing terms: of pl_cossin, whose sums and products are among the others
+ * */
+struct operations { double multiplications, additions, calls, forcings; };
 double instructions_of(const struct step *step, struct operations of); /* of a Cortex-M4 */
 double instructions_of_linear(const struct step *step);     /* by its program, without refreshes */
 const char *two_digits(double count);                       /* 5200, of 5234 */

@@ -34,10 +34,10 @@ struct facts facts_of_step(const struct step *step)
 	return facts;
 }
 
-const char *step_objection(const struct step *step, enum capability asked)
+const char *step_objection(const struct step *step, enum capability requested)
 {
 	const struct facts facts = facts_of_step(step);
-	return objection_to(asked, &facts, step->model).why;
+	return objection_to(requested, &facts, step->model).why;
 }
 
 bool has_remainder(const struct step *step)

@@ -11,8 +11,8 @@ struct descriptor descriptor_of(const struct model *model)
 	return (struct descriptor){
 		.flow = flow_of(model),
 		.events = regions ? EVENTS_OF_REGIONS : follows_crossings(model) ? EVENTS_SPLIT : EVENTS_NONE,
-		.tuned = !regions && model->params.tuning, .two_words = model->asked.compensated,
-		.many = model->asked.batch, .apart = regions && regions->parts
+		.tuned = !regions && model->params.tuning, .two_words = model->request.compensated,
+		.many = model->request.batch, .apart = regions && regions->parts
 	};
 }
 
@@ -78,8 +78,8 @@ static void mark_loads_of(const struct switching *s, int segments, bool *needed)
 		const size_t columns = (size_t)(s->system->load[l].columns * segments);
 		for (int k = 0; k < s->systems; k++)
 			needed[l] = needed[l] || load_acts(&s->system[k], &s->system[k].load[l]);
-		for (int e = 0; e < s->expressions; e++)
-			needed[l] = needed[l] || !rationals_zero(columns, s->expression[e].row->load[l]);
+		for (int e = 0; e < s->functions; e++)
+			needed[l] = needed[l] || !rationals_zero(columns, s->function[e].row->load[l]);
 		for (int k = 0; k < s->regions; k++)
 			mark_loads_of_region(&s->region[k], s->transmitted_forces, l, columns, &needed[l]);
 		mark_loads_of_impacts(s, l, columns, &needed[l]);

@@ -66,7 +66,7 @@ struct program {
 	bool *reads;                /* per state: whether its old value is read */
 	bool *uses;                 /* per column of the loads */
 	/* for cos/sin pairs and exponentials: counted below too, or beside it what comes at each refresh */
-	int wave_multiplications, wave_additions;
+	int forcing_multiplications, forcing_additions;
 	int multiplications, additions, calls; /* calls: of the model's own functions */
 	int peak_multiplications, peak_additions; /* beside them: the outputs, and that none passes its peak */
 	bool loops;                 /* over tables: a large model */

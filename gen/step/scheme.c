@@ -5,7 +5,7 @@
 #include "model/reads.h"
 #include "step/collocation/collocation.h"
 #include "cost.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
@@ -58,34 +58,34 @@ static void make_tables(struct step *step, int count, const struct wanted *wante
 	for (int k = 0; k < step->branches; k++)
 		step->branch[k].table =
 			tables_of(step->model, step->branch[k].resolvent, &step->branch[k].system, count, wanted);
-	step->branch->whole = step->branch[0].table[0];
+	step->branch->full = step->branch[0].table[0];
 }
 
-static void make_whole(void *context)
+static void make_full(void *context)
 {
 	struct step *step = context;
-	struct wanted *whole = NEW(struct wanted);
-	*whole = (struct wanted){ .Phi = true,
+	struct wanted *full = NEW(struct wanted);
+	*full = (struct wanted){ .Phi = true,
 				  .two_words = true,
 				  .name = "full",
 				  .increments = step->form == FORM_DELTA,
 				  .mass = step->linear.kicks.mass };
-	mpq_init(whole->fraction);
-	mpq_set_ui(whole->fraction, 1, 1);
-	make_tables(step, 1, whole);
+	mpq_init(full->fraction);
+	mpq_set_ui(full->fraction, 1, 1);
+	make_tables(step, 1, full);
 }
 
 static void build_exact(struct step *step)
 {
 	choose_form(step);
-	bool chosen = step->model->asked.form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
-	if (chosen && !silent_guard(make_whole, step)) {        /* kicks may leave the range where Phi does not */
+	bool chosen = step->model->request.form == FORM_AUTO && step->form == FORM_KICK_DRIFT_KICK;
+	if (chosen && !silent_guard(make_full, step)) {         /* kicks may leave the range where Phi does not */
 		step->form = FORM_DELTA;
 		step->linear.kicks.mass = NULL;
 		step->linear.kicks.momenta = chosen = false;
 	}
 	if (!chosen)
-		make_whole(step);
+		make_full(step);
 	if (step->model->params.tuning)
 		mark_tuned_zeros(step);
 	leave_out_lost(step);
@@ -114,7 +114,7 @@ static void build_with_remainder(struct step *step)
 	make_tables(step, recipe->tables, recipe->table);
 	find_carries(step);
 	step->program->reads = ARRAY(bool, step->branch->system.states);
-	step->program->uses = ARRAY(bool, step->branch->whole->columns);
+	step->program->uses = ARRAY(bool, step->branch->full->columns);
 	step->program->loops = !is_page(step);
 	mark_loads(step, step->program);
 	count_program(step, step->program);
@@ -135,7 +135,7 @@ static void build_linear_step(struct step *step)
 {
 	step->layout = layout_of(&step->branch->system, false);
 	build_exact(step);
-	if (!step->model->asked.again.trial || loads_change(&step->branch->system) || peak_outputs(step->model) > 0)
+	if (!step->model->request.again.trial || loads_change(&step->branch->system) || peak_outputs(step->model) > 0)
 		series_plan(step);
 }
 
@@ -173,7 +173,7 @@ static void write_no_list(struct step *step)
 	step->carried.place = ARRAY(int, states);
 	step->program = NEW(struct program);
 	step->program->reads = ARRAY(bool, states);
-	step->program->uses = ARRAY(bool, step->branch->whole->columns);
+	step->program->uses = ARRAY(bool, step->branch->full->columns);
 	for (int i = 0; i < states; i++) {
 		step->carried.place[i] = -1;
 		step->program->reads[i] = true;
@@ -201,8 +201,8 @@ static void share_series(const struct step *step, struct program *program)
 	int rows = over - 1, sums = step->branch->system.states * (step->taylor.expansion->order + 1);
 	program->multiplications = share(program->multiplications, rows * terms, over);
 	program->additions = share(program->additions, rows * sums, over);
-	program->wave_multiplications = share(program->wave_multiplications, 0, over);
-	program->wave_additions = share(program->wave_additions, 0, over);
+	program->forcing_multiplications = share(program->forcing_multiplications, 0, over);
+	program->forcing_additions = share(program->forcing_additions, 0, over);
 	program->calls = share(program->calls, 0, over);
 }
 
@@ -211,7 +211,7 @@ static void count_series(struct step *step)
 	count_expansion(step, step->program);
 	step->taylor.expansion->multiplications = step->program->multiplications;
 	if (step->program->multiplications > LIMIT_SERIES)
-		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
+		error(step->model->request.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take "
 		      "minutes",
 		      step->taylor.expansion->order, step->program->multiplications, LIMIT_SERIES);
@@ -234,12 +234,12 @@ static void need_all_known(struct step *step)
 	const struct model *model = step->model;
 	const char *why = system->inputs > 0 ? format("the samples of %s to come are not known", system->input[0].name)
 			  : loads_change(system) ? "a load or a condition on t changes its formula inside"
-			  : step->taylor.divided ? format("it ends where %s passes a breakpoint",
-						   form_text(model, step->taylor.divided->expression[0].form))
+			  : step->taylor.switching ? format("it ends where %s passes a breakpoint",
+						   form_text(model, step->taylor.switching->function[0].form))
 					  : NULL;
 	if (model->truncation.over < 2 || !why)
 		return;
-	stand_aside(model->asked.scheme_over->start, format("over %d", model->truncation.over), why);
+	stand_aside(model->request.scheme_over->start, format("over %d", model->truncation.over), why);
 	step->plain = model_copy(model);
 	step->plain->truncation.over = 1;
 	abandon();
@@ -257,8 +257,8 @@ static void find_slopes(struct step *step)
 
 static void divide_step(struct step *step)
 {
-	step->taylor.divided = step->taylor.expansion->expressions > 0 ? step->taylor.expansion : NULL;
-	check_divided(step);
+	step->taylor.switching = step->taylor.expansion->functions > 0 ? step->taylor.expansion : NULL;
+	check_series_switching(step);
 	const struct expansion *x = step->taylor.expansion;
 	step->taylor.unresolved = x->unresolved_functions > 0 || x->looks || x->crowded > 0 ? x : NULL;
 }
@@ -281,7 +281,7 @@ static void build_collocated_step(struct step *step)
 	bool switches = scheme_row(step->model->scheme)->switches;
 	int coords = step->model->n;
 	if (coords > LIMIT_COLLOCATED)
-		error(step->model->asked.scheme_at, "etdrk4 and the schemes like it loop over tables",
+		error(step->model->request.scheme_at, "etdrk4 and the schemes like it loop over tables",
 		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has "
 		      "%d",
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
@@ -345,7 +345,7 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 static void check_event_splits(const struct model *model)
 {
 	if (has_contacts(model) && !scheme_row(model->scheme)->expands)
-		refuse(CAN_SPLIT, model, model->asked.scheme_at);
+		refuse(CAN_SPLIT, model, model->request.scheme_at);
 }
 
 static void build(void *context)
@@ -361,14 +361,14 @@ static void build(void *context)
 	if (step->is.flow == FLOW_NORMAL)
 		refuse(CAN_NORMAL, model, scheme_place(step));
 	if (step->is.two_words)
-		refuse(CAN_COMPENSATED, model, model->asked.compensated_at);
+		refuse(CAN_COMPENSATED, model, model->request.compensated_at);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);
 	check_step_form(step);
 	check_refresh(step);
 	build_flow(step);
-	if (model->asked.selftest)
+	if (model->request.selftest)
 		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
 	if (step->is.many)
 		step->no.lanes = step_objection(step, CAN_LANES);
@@ -376,7 +376,7 @@ static void build(void *context)
 	count_peaks(step);
 	program_check(step);
 	plan_phases(step);
-	if (!model->asked.again.trial)
+	if (!model->request.again.trial)
 		plan_rows(step);
 }
 
@@ -391,9 +391,9 @@ struct step *step_build(const struct model *model)
 		return step;
 	struct model *plain = NEW(struct model);
 	*plain = *model->written;
-	plain->asked.form = FORM_DIRECT;
-	plain->asked.compensated = plain->asked.selftest = plain->asked.batch = false;
-	plain->asked.refresh = plain->asked.rows = 1;
+	plain->request.form = FORM_DIRECT;
+	plain->request.compensated = plain->request.selftest = plain->request.batch = false;
+	plain->request.refresh = plain->request.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;
 }

@@ -22,7 +22,7 @@ struct expansion;
 struct forced;
 struct modal;
 struct normal;
-struct rest;
+struct denormal_flush;
 struct rows;
 struct tuned_blocks;
 
@@ -55,7 +55,7 @@ struct carried {                    /* states that nothing leads back from, whic
 };
 struct linear_step {                /* what steps of linear models alone have */
 	struct kicks kicks;
-	struct rest *rest;          /* what comes to rest where it is all but nothing; NULL: no part does */
+	struct denormal_flush *flush;          /* what comes to rest where it is all but nothing; NULL: no part does */
 	struct load_phase *phase;   /* per load */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 };
@@ -66,7 +66,7 @@ struct region_step {                /* steps of piecewise-linear ones */
 };
 struct taylor_step {                /* what goes by Taylor series; else all NULL */
 	struct expansion *expansion;
-	struct expansion *divided;  /* whose expressions choose formulas by the state; NULL: none does */
+	struct expansion *switching;  /* whose expressions choose formulas by the state; NULL: none does */
 	const struct expansion *unresolved; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
 };
@@ -113,7 +113,7 @@ bool *loads_of_regions(const struct step *step);
 /* ---- facts.c: what is so of a step, and what stands against what is asked of it ---- */
 
 struct facts facts_of_step(const struct step *step);
-const char *step_objection(const struct step *step, enum capability asked); /* NULL: nothing does */
+const char *step_objection(const struct step *step, enum capability requested); /* NULL: nothing does */
 bool has_remainder(const struct step *step);
 
 /* ---- scheme.c: the step of a model ---- */

@@ -25,23 +25,23 @@ static tape_ref number_times(struct tape *t, double factor, tape_ref x)
 
 /* ---- what forms read ---- */
 
-int load_of_wave(const struct linear *system, const struct wave *wave)
+int load_of_forcing(const struct linear *system, const struct forcing *forcing)
 {
 	int l = 0;
-	while (l < system->loads && system->load[l].wave != wave)
+	while (l < system->loads && system->load[l].forcing != forcing)
 		l++;            /* none: of a let whose value nothing reads */
 	return l;
 }
 
 tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct basis *basis)
 {
-	if (basis->kind != BASIS_WAVE)
+	if (basis->kind != BASIS_FORCING)
 		return tape_operand(t, basis->kind == BASIS_COORD ? TAPE_COORD : TAPE_INPUT, basis->index,
 				    basis->order);
-	if (is_polynomial(basis->wave))
+	if (is_polynomial(basis->forcing))
 		return tape_power_of_time(t, basis->power);
-	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
-	return tape_operand(t, TAPE_LOAD, load_of_wave(system, basis->wave), column);
+	int column = oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power;
+	return tape_operand(t, TAPE_LOAD, load_of_forcing(system, basis->forcing), column);
 }
 
 /* ---- what a step assigns ---- */
@@ -104,7 +104,7 @@ static tape_ref operand_ref(const struct sums *s, const struct operand *o)
 static tape_ref term_ref(const struct sums *s, const struct assignment *a, const struct product *p, bool second)
 {
 	const struct step *step = s->step;
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	const bool load = p->operand.kind == OPERAND_LOAD;
 	int rotated = load ? refreshed_term(step, a->target, p->operand.index) : -1;
 	tape_ref x = operand_ref(s, &p->operand);
@@ -154,7 +154,7 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 {
 	enum { INDENT = 14 };
 	const struct program *program = step->program;
-	const int states = step->branch->whole->states;
+	const int states = step->branch->full->states;
 	struct sums s = { t, step, ARRAY(tape_ref, states), ARRAY(bool, states) };
 	tape_ref *to = program->in_order ? s.state : ARRAY(tape_ref, states);
 	for (int i = 0; i < states; i++)
@@ -331,7 +331,7 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 
 static bool sustains(const struct step *step, int row, int column)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	bool any = false;
 	for (int s = 0; s < step->branch->system.segments && is_forced(step, column); s++)
 		any = any || step->forced->part[(s * step->forced->rows + row) * table->columns + column].value != 0;
@@ -340,7 +340,7 @@ static bool sustains(const struct step *step, int row, int column)
 
 void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	const struct linear *system = &step->branch->system;
 	tape_ref *term = ARRAY(tape_ref, table->columns + 1);
 	for (int i = 0; i < table->states; i++) {

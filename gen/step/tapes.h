@@ -8,7 +8,7 @@
 
 /* ---- tapes.c: what forms read, a linear step and rows of outputs as nodes of a tape ---- */
 
-int load_of_wave(const struct linear *system, const struct wave *wave); /* the number of loads: of none */
+int load_of_forcing(const struct linear *system, const struct forcing *forcing); /* the number of loads: of none */
 /* What a form reads of a coordinate, an input, a load now */
 tape_ref tape_of_basis(struct tape *t, const struct linear *system, const struct basis *basis);
 

@@ -177,7 +177,7 @@ tape_ref tape_form_in_time(struct tape *t, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		tape_ref factor = tape_constant(t, form->term[i].factor);
-		term[i] = basis->kind == BASIS_WAVE && basis->power > 0 ? times(t, factor, when)
+		term[i] = basis->kind == BASIS_FORCING && basis->power > 0 ? times(t, factor, when)
 			  : basis->kind == BASIS_PI			? times(t, factor, tape_pi(t))
 									: factor;
 	}
@@ -302,17 +302,17 @@ static tape_ref times_call(struct tape *t, tape_ref product, enum function funct
 	return product == TAPE_NONE ? value : tape_binary(t, TAPE_MUL, product, value);
 }
 
-tape_ref tape_wave(struct tape *t, const struct basis *basis)
+tape_ref tape_forcing(struct tape *t, const struct basis *basis)
 {
-	const struct wave *wave = basis->wave;
+	const struct forcing *forcing = basis->forcing;
 	tape_ref time = tape_operand(t, TAPE_TIME, 0, 0), product = tape_power_of_time(t, basis->power);
-	if (mpq_sgn(wave->a) != 0)
-		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, wave->a), time));
-	if (!oscillates(wave))
+	if (mpq_sgn(forcing->a) != 0)
+		product = times_call(t, product, FN_EXP, tape_binary(t, TAPE_MUL, tape_constant(t, forcing->a), time));
+	if (!oscillates(forcing))
 		return product;
-	tape_ref angle = tape_binary(t, TAPE_MUL, tape_constant(t, wave->w), time);
-	if (mpq_sgn(wave->p) != 0)
-		angle = tape_binary(t, TAPE_ADD, angle, tape_constant(t, wave->p));
+	tape_ref angle = tape_binary(t, TAPE_MUL, tape_constant(t, forcing->w), time);
+	if (mpq_sgn(forcing->p) != 0)
+		angle = tape_binary(t, TAPE_ADD, angle, tape_constant(t, forcing->p));
 	return times_call(t, product, basis->sine ? FN_SIN : FN_COS, angle);
 }
 

@@ -27,8 +27,8 @@ struct sample {
 static tape_ref leaf(struct tape *t, const void *context, const struct basis *basis)
 {
 	(void)context;
-	if (basis->kind == BASIS_WAVE)
-		return tape_wave(t, basis);
+	if (basis->kind == BASIS_FORCING)
+		return tape_forcing(t, basis);
 	return tape_operand(t, basis->kind == BASIS_COORD ? TAPE_COORD : TAPE_INPUT, basis->index, basis->order);
 }
 

@@ -119,7 +119,7 @@ struct tape_forms *tape_forms_new(struct tape *t, struct tape_reader reader, int
 void tape_count_form(struct tape_forms *f, const struct form *form); /* one more */
 struct tape *tape_of_forms(const struct tape_forms *f);
 tape_ref tape_form(struct tape_forms *f, const struct form *form);
-tape_ref tape_wave(struct tape *t, const struct basis *basis); /* t^k e^{a t} cos(w t + p), or sin */
+tape_ref tape_forcing(struct tape *t, const struct basis *basis); /* t^k e^{a t} cos(w t + p), or sin */
 tape_ref tape_term(struct tape_forms *f, const struct form_term *term);
 /* Of numbers and t: at the time at which conditions on time hold as they do */
 tape_ref tape_form_in_time(struct tape *t, const struct form *form);

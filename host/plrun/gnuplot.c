@@ -171,7 +171,7 @@ static void print_terminal(FILE *to, const struct script *s, const struct sheet 
 			sheet->width * svg, sheet->height * svg, paper ? 10.5 : 12.0, inks->paper);
 }
 
-static void print_look(FILE *to, const struct script *s, const struct sheet *sheet)
+static void print_check(FILE *to, const struct script *s, const struct sheet *sheet)
 {
 	const struct inks *inks = s->look->dark ? &dark : &light;
 	fprintf(to, "set encoding utf8\nset grid lt 1 lc rgb '%s'\nset border lc rgb '%s'\nset lmargin %d\n"
@@ -223,7 +223,7 @@ void script_draw(struct script *s)
 	close_panel(s);
 	const struct sheet sheet = sheet_of(s);
 	print_terminal(script, s, &sheet);
-	print_look(script, s, &sheet);
+	print_check(script, s, &sheet);
 	rewind(s->data);
 	for (int c; (c = getc(s->data)) != EOF;)
 		putc(c, script);

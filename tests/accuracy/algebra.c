@@ -36,16 +36,16 @@ bool eliminate(size_t rows, size_t width, mpq_t *W)
 
 void fill_load_states(const struct load *load, size_t size, mpq_t *A)
 {
-    const bool turns = mpq_sgn(load->wave->w) != 0;
+    const bool turns = mpq_sgn(load->forcing->w) != 0;
     const size_t trig = turns ? 2 : 1;
     for (size_t c = 0; c < (size_t)load->columns; c++) {
-        mpq_set(A[c * size + c], load->wave->a);
+        mpq_set(A[c * size + c], load->forcing->a);
         if (c >= trig)
             mpq_set_ui(A[c * size + c - trig], c / trig, 1);
         if (turns && c % 2 == 0)
-            mpq_neg(A[c * size + c + 1], load->wave->w);
+            mpq_neg(A[c * size + c + 1], load->forcing->w);
         if (turns && c % 2 == 1)
-            mpq_set(A[c * size + c - 1], load->wave->w);
+            mpq_set(A[c * size + c - 1], load->forcing->w);
     }
 }
 

@@ -151,8 +151,8 @@ static void compare_outputs(void *context)
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
             trial.time = format("%lu h", multiples[k]);
-            const double expected = started_value(fs, f, t, false, r->full->asked.step_at, name).value;
-            compare(name, started_value(gs, g, t, false, r->full->asked.step_at, name).value, expected);
+            const double expected = started_value(fs, f, t, false, r->full->request.step_at, name).value;
+            compare(name, started_value(gs, g, t, false, r->full->request.step_at, name).value, expected);
         }
     }
     mpq_clear(t);
@@ -165,7 +165,7 @@ static void try_reduction(const char *text)
     struct model *full = model_of(text);
     if (!full)
         return;
-    full->asked.reduce = true;
+    full->request.reduce = true;
     struct model *reduced = model_reduce(full);
     const size_t rank = observable_rank(full);
     trial.scheme = "exact (reduced)";
@@ -290,13 +290,13 @@ static void try_critical(const char *text)
     trial.time = "as written, w h = 1";
     struct model *model = model_of(text);
     const struct step *step = model ? step_build(model) : NULL;
-    if (!step || !step->branch->whole->Phi[3].zero || step->branch->whole->Phi[3].value != 0)
+    if (!step || !step->branch->full->Phi[3].zero || step->branch->full->Phi[3].value != 0)
         complain("Phi_22", "not found to be zero");
     if (!step)
         return;
     rational_parse(model->h, "0.0100000000000000000000000000001");
     step = step_build(model);
-    if (!step || step->branch->whole->Phi[3].zero || !(step->branch->whole->Phi[3].value < -3e-30))
+    if (!step || step->branch->full->Phi[3].zero || !(step->branch->full->Phi[3].value < -3e-30))
         complain("Phi_22", "1e-31 beside its zero: found to be zero");
 }
 

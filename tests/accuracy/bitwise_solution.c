@@ -30,17 +30,17 @@ static void set_load_states(const struct linear *system, mpq_srcptr t, mpq_t *z)
     mpq_t angle;
     mpq_init(angle);
     for (size_t at = 0, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns) {
-        const struct wave *wave = system->load[l].wave;
-        const size_t trig = mpq_sgn(wave->w) != 0 ? 2 : 1;
+        const struct forcing *forcing = system->load[l].forcing;
+        const size_t trig = mpq_sgn(forcing->w) != 0 ? 2 : 1;
         for (size_t c = 0; c < (size_t)system->load[l].columns; c++) {
-            mpq_mul(angle, wave->a, t);
+            mpq_mul(angle, forcing->a, t);
             set_function(z[at + c], angle, mpfr_exp);
             for (size_t k = 0; k < c / trig; k++)
                 mpq_mul(z[at + c], z[at + c], t);
             if (trig == 1)
                 continue;
-            mpq_mul(angle, wave->w, t);
-            mpq_add(angle, angle, wave->p);
+            mpq_mul(angle, forcing->w, t);
+            mpq_add(angle, angle, forcing->p);
             set_function(angle, angle, c % 2 ? mpfr_sin : mpfr_cos);
             mpq_mul(z[at + c], z[at + c], angle);
         }
@@ -131,7 +131,7 @@ static void compare_solution_values(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at,
+            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
                                                        model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
@@ -312,7 +312,7 @@ static void compare_changes(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->asked.step_at,
+            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
                                                        model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }

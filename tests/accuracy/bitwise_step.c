@@ -273,20 +273,20 @@ static void compare_roads(const struct step *step)
 {
     const struct linear *system = &step->branch->system;
     const struct layout *layout = &step->layout;
-    const int n = system->states, columns = step->branch->whole->columns;
+    const int n = system->states, columns = step->branch->full->columns;
     if (n > LIMIT_RESIDUE_STATES || system->heldK)
         return;
     struct taylor *taylor = taylor_of(layout->size, (const mpq_t *)augmented_matrix(layout, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             compare_road(taylor, i, j, entry_name(step->model, (size_t)i, (size_t)j),
-                         step->branch->whole->Phi[i * n + j].value);
+                         step->branch->full->Phi[i * n + j].value);
         for (int l = 0, column = 0; l < system->loads; l++)
             for (int k = 0; k < system->load[l].columns; k++, column++)
                 if (layout->load[l] >= 0)
                     compare_road(taylor, i, layout->load[l] + k,
                                  entry_name(step->model, (size_t)i, (size_t)(n + column)),
-                                 step->branch->whole->load[i * columns + column].value);
+                                 step->branch->full->load[i * columns + column].value);
     }
 }
 
@@ -313,7 +313,7 @@ void compare_scheme(const struct model *model, bool both_roads)
         if (step && undecided)
             complain(format("entry %d of %zu x %zu", -1 - undecided, a.size, a.columns), "the judge cannot decide");
         else if (step)
-            compare_step(model, s, &a, step->branch->whole, expected);
+            compare_step(model, s, &a, step->branch->full, expected);
     }
     if (!step)
         compare_refusal(overflow);

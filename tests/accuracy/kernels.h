@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the parts of kernels share: kernels_columns.c has the plant and sums of e^{A tau} w, kernels_specs.c models. */
-#ifndef KERNELS_H
-#define KERNELS_H
+/* What the parts of kernels share: phi_weights_columns.c has the plant and sums of e^{A tau} w, phi_weights_specs.c
+ * models. */
+#ifndef PHI_WEIGHTS_H
+#define PHI_WEIGHTS_H
 
 #include "algebra.h"
 #include "cases.h"
@@ -26,7 +27,7 @@ extern struct tried {
 
 void complain(const char *what, const char *message);
 
-/* ---- kernels_columns.c ---- */
+/* ---- phi_weights_columns.c ---- */
 
 /* x = states, [held states,] loads, inputs (with their slopes), then for each channel a chain u0' = u1, u1' = u2, u2' =
  * 0, whose u0 is the force on its equation: the response to a unit u2 is tau^3 phi3(A tau) B, B what a unit force gives
@@ -71,7 +72,7 @@ struct part *add_part(struct judge *judge, struct column *column, mpq_srcptr fra
 void compare_column(const struct model *model, const struct judge *judge, struct column *column,
                     const struct coefficient *found, size_t stride);
 
-/* ---- kernels_specs.c ---- */
+/* ---- phi_weights_specs.c ---- */
 
 /* Specs that are hard */
 extern const struct hard_spec { const char *name, *text; } specs[];

@@ -156,8 +156,8 @@ bundles 'series' "$root/models/pendulum.spec"
 bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
 bundles 'friction by series' "$root/tests/contacts/rubbed.spec" --tolerance 1e-5
 bundles 'tunable regions' "$root/tests/tunable/regions/rubbing.spec"
-bundles 'crossings by parts' "$root/tests/divided/gap_cubic.spec" --scheme etdrk4
-bundles 'crossings, where it is stiff or not' "$root/tests/divided/stop_cubic.spec" --scheme auto
+bundles 'crossings by parts' "$root/tests/series_switching/gap_cubic.spec" --scheme etdrk4
+bundles 'crossings, where it is stiff or not' "$root/tests/series_switching/stop_cubic.spec" --scheme auto
 
 # ---- names: of a model that is called as something in the runtime ----
 

@@ -18,7 +18,7 @@
 int plgen(int argc, char **argv);
 void __lsan_do_leak_check(void) __attribute__((weak));          /* where it is linked with sanitizers */
 
-static const char *const kept[] = { "kept.c", "kept.h" };
+static const char *const kept[] = { "kept.c", "step_map.h" };
 static const struct text as_it_was = { "left as it was\n", 15 };
 static char *folder, *in, *out;         /* in: where a case runs; out: with files that have to stay */
 static int output, messages;            /* what is written to standard output and error */

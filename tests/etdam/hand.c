@@ -46,21 +46,21 @@ static void bent_mode_forces(const bent *s, int which, const real f[], const rea
     force[0] = (real)(-2 * sin((double)eta[0]) * pow(cos((double)eta[0]), 3));
 }
 
-static void bent_node_modes(const bent *s, int which, int node, real force[3][1], const real wave[], real eta[],
+static void bent_node_modes(const bent *s, int which, int node, real force[3][1], const real forcing[], real eta[],
                                real rate[])
 {
     const real h = bent_H, to = h * (real)node / 2;
-    (void)which, (void)wave;
+    (void)which, (void)forcing;
     eta[0] = s->eta[0] + to * s->rate[0] + gained(node, 0, h, force[0][0], force[1][0], force[2][0]);
     rate[0] = s->rate[0] + gained(node, 1, h, force[0][0], force[1][0], force[2][0]);
 }
 
-static void bent_predict(const bent *s, int which, const real wave[], real eta[], real rate[], real expected[])
+static void bent_predict(const bent *s, int which, const real forcing[], real eta[], real rate[], real expected[])
 {
     const double now = (double)s->force[s->newest][0], before = (double)s->force[(s->newest + 2) % 3][0];
     const double first = (double)s->force[(s->newest + 1) % 3][0];
     const real h = bent_H;
-    (void)which, (void)wave;
+    (void)which, (void)forcing;
     eta[0] = s->eta[0] + h * s->rate[0] + h * h * (real)(19 * now / 24 - 5 * before / 12 + first / 8);
     rate[0] = s->rate[0] + h * (real)(23 * now / 12 - 4 * before / 3 + 5 * first / 12);
     expected[0] = (real)(3 * now - 3 * before + first);
@@ -85,7 +85,7 @@ static const real bent_stiffness[1][1] = {{0}};
 #define PL_STAGES 2
 #define PL_FIRST_SWEEPS 6
 #define PL_FUNCTIONS 0
-#define PL_WAVES 0
+#define PL_FORCINGS 0
 #define PL_OPERATORS 1
 #define PL_SEGMENTS 1
 #define PL_STEADY 0
@@ -155,10 +155,10 @@ static void plane_functions(const plane *s, int node, real start, real f[])
     f[1] = t < 2 ? t : 4 - t;
 }
 
-static void plane_waves(const plane *s, real wave[])
+static void plane_forcings(const plane *s, real forcing[])
 {
-    wave[0] = (real)cos((double)plane_time(s));
-    wave[1] = (real)sin((double)plane_time(s));
+    forcing[0] = (real)cos((double)plane_time(s));
+    forcing[1] = (real)sin((double)plane_time(s));
 }
 
 static void plane_mode_forces(const plane *s, int which, const real f[], const real eta[], const real rate[],
@@ -170,17 +170,17 @@ static void plane_mode_forces(const plane *s, int which, const real f[], const r
 }
 
 /* What cos t adds in `to` [s] to the y of a point, or to its speed */
-static double of_load(int row, double to, const real wave[])
+static double of_load(int row, double to, const real forcing[])
 {
-    const double c = (double)wave[0], d = (double)wave[1];
+    const double c = (double)forcing[0], d = (double)forcing[1];
     return row ? c * sin(to) + d * (cos(to) - 1) : c * (1 - cos(to)) + d * (sin(to) - to);
 }
 
-static void plane_node_modes(const plane *s, int which, int node, real force[3][2], const real wave[], real eta[],
+static void plane_node_modes(const plane *s, int which, int node, real force[3][2], const real forcing[], real eta[],
                              real rate[])
 {
     const real h = plane_H, to = h * (real)node / 2;
-    const real y[2] = {0, (real)of_load(0, (double)to, wave)}, speed[2] = {0, (real)of_load(1, (double)to, wave)};
+    const real y[2] = {0, (real)of_load(0, (double)to, forcing)}, speed[2] = {0, (real)of_load(1, (double)to, forcing)};
     real of_y[2], of_speed[2];
     int i;
     plane_modes_of(which, y, of_y);
@@ -203,12 +203,12 @@ static void plane_forces_ahead(const plane *s, real force[3][2])
 }
 
 /* Of the first operator: [2 x, 2 y, x', y'], amplitudes being scaled by 2 */
-static void plane_still(const real x[], const real wave[], real sum[])
+static void plane_still(const real x[], const real forcing[], real sum[])
 {
     sum[0] = x[0] + 2 * plane_H * x[2];
-    sum[1] = x[1] + 2 * plane_H * x[3] + (real)(2 * of_load(0, (double)plane_H, wave));
+    sum[1] = x[1] + 2 * plane_H * x[3] + (real)(2 * of_load(0, (double)plane_H, forcing));
     sum[2] = x[2];
-    sum[3] = x[3] + (real)of_load(1, (double)plane_H, wave);
+    sum[3] = x[3] + (real)of_load(1, (double)plane_H, forcing);
 }
 
 static const real plane_bound[1] = {(real)1.5}, plane_omega[2][2] = {{2, 2}, {(real)0.5, (real)0.5}};
@@ -229,7 +229,7 @@ static const real plane_next[1][2][2] = {
 #define PL_SWEEPS 1
 #define PL_FIRST_SWEEPS 2
 #define PL_FUNCTIONS 2
-#define PL_WAVES 2
+#define PL_FORCINGS 2
 #define PL_OPERATORS 2
 #define PL_SELECTOR 1
 #define PL_SEGMENTS 3

@@ -123,8 +123,8 @@ static void want_loads_and_inputs(struct wanting *w, int i)
     const bool changes = system->segments > 1;
     for (int l = 0, column = 0; l < system->loads; l++)
         for (int k = 0; k < system->load[l].columns; k++, column++) {
-            const struct wave *wave = system->load[l].wave;
-            const bool constant = k == 0 && !mpq_sgn(wave->a) && !mpq_sgn(wave->w);
+            const struct forcing *forcing = system->load[l].forcing;
+            const bool constant = k == 0 && !mpq_sgn(forcing->a) && !mpq_sgn(forcing->w);
             const struct judged_number *number = &j->step[i * j->columns + j->states + column];
             if (!changes && !is_refreshed(w->step, l) && !is_forced(w->step, column))
                 want(w, number, constant, w->variant->compensated,
@@ -316,7 +316,7 @@ static bool load_moves(const struct judge *j, int i, int first, int columns)
 }
 
 /* In each step after a refresh: every column of every load in the states that it moves; then their second words */
-static void want_turned(struct wanting *w, int l)
+static void want_rotated(struct wanting *w, int l)
 {
     const struct judge *j = w->judge;
     const struct linear *system = j->system;
@@ -339,7 +339,7 @@ static void want_turned(struct wanting *w, int l)
         append(w->list, low.value[k], low.what[k]);
 }
 
-static void compare_turned(const char *code, struct wanting *w)
+static void compare_rotated(const char *code, struct wanting *w)
 {
     struct list found = { 0 }, expected = { 0 };
     const int steps = w->step->refresh->steps;
@@ -349,7 +349,7 @@ static void compare_turned(const char *code, struct wanting *w)
     }
     w->list = &expected;
     for (int l = 0; l < steps; l++)
-        want_turned(w, l);
+        want_rotated(w, l);
     numbers_of_table(code, w->model->name, "rotated", w->variant->single, &found);
     compare_lists("rotated", &found, &expected);
 }
@@ -373,7 +373,7 @@ static void compare_code(const char *code, const struct step *step, const struct
         compare_lists("step", &found, &expected);
     }
     if (step->refresh && step->refresh->terms)
-        compare_turned(code, &w);
+        compare_rotated(code, &w);
     if (kept)
         return;                             /* Phi and Gamma are of the states as written */
     compare_table(code, &w, "Phi", 0, 0, j->states, j->step, j->columns);
@@ -390,8 +390,8 @@ static void compare_symmetry(const struct step *step)
     for (int i = 0; i < n; i++)
         for (int k = 0; k < i; k++) {
             const struct coefficient *pair[2][2] = {
-                { &step->branch->whole->kick[i * n + k], &step->branch->whole->kick[k * n + i] },
-                { &step->branch->whole->drift[i * n + k], &step->branch->whole->drift[k * n + i] }
+                { &step->branch->full->kick[i * n + k], &step->branch->full->kick[k * n + i] },
+                { &step->branch->full->drift[i * n + k], &step->branch->full->drift[k * n + i] }
             };
             for (int p = 0; p < 2; p++) {
                 trial.compared++;

@@ -97,7 +97,7 @@ step_of() {
 	sed -n "s/^#define [A-Z0-9_]*_H \([-0-9.e]*\).*/\1/p" "$1.h" | head -n 1
 }
 
-expressions_of() { # ID
+functions_of() { # ID
 	sed -n '/^ \*     expression [0-9]*: /p' "$1.c"
 }
 
@@ -306,7 +306,7 @@ batch_add() {
 		[ -n "$beside" ] || { slopes=${whole}_slopes && slopes "$whole"; }
 		region=NULL
 		other=NULL
-		if [ -n "$beside" ] && [ "$(expressions_of "$id")" = "$(expressions_of "$whole")" ] &&
+		if [ -n "$beside" ] && [ "$(functions_of "$id")" = "$(functions_of "$whole")" ] &&
 		    grep -q "^int *${whole}_region(" "$whole.h"; then
 			other=${whole}_where_too
 			echo "static int ${whole}_where_too(const void *s) { return ${whole}_region(s); }"

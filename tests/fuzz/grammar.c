@@ -304,7 +304,7 @@ static struct both regional(int depth)
 	}
 }
 
-static struct both remainder(void)
+static struct both smooth_remainder(void)
 {
 	const struct both k = factor(0.2, 3), x = position(), w = any_state();
 	switch (below(18)) {
@@ -346,7 +346,7 @@ static struct both kinked(void)
         case 5:
             return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
 	case 6: case 7: return JOIN("@*@", fixed(0.5, 5), extreme_in_extreme(x));
-        default: return JOIN("@ + @", regional(1), remainder());
+        default: return JOIN("@ + @", regional(1), smooth_remainder());
 	}
 }
 
@@ -357,9 +357,9 @@ static struct both force(void)
 	if (class == PIECEWISE && kind < 55)
 		return regional(2);
 	if (class == SMOOTH && kind < 55)
-		return remainder();
+		return smooth_remainder();
 	if (class == KINKED && kind < 60)
-		return kind < 40 ? kinked() : remainder();
+		return kind < 40 ? kinked() : smooth_remainder();
 	if (inputs && kind < 80)
 		return JOIN("@*@", factor(0.5, 4), sampled());
 	return load(class == PIECEWISE && chance(85) ? 0 : 2);

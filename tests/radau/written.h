@@ -23,7 +23,7 @@
 #define PL_INPUTS 0
 #define PL_KNOWN 1
 #define PL_SEGMENTS 1
-#define PL_EXPRESSIONS 0
+#define PL_SWITCHING_FUNCTIONS 0
 #define PL_CONTACTS 0
 #define PL_ARGUMENTS 0
 #define PL_ORDER 0
@@ -36,7 +36,7 @@
 #include "numbers.h"
 
 typedef struct MODEL {
-    real y[MODEL_STATES], rest[MODEL_STATES], start[MODEL_STATES], gain[MODEL_STATES], poly[4][MODEL_STATES];
+    real y[MODEL_STATES], low[MODEL_STATES], start[MODEL_STATES], gain[MODEL_STATES], poly[4][MODEL_STATES];
     real at, at_low, size, per, want, scale[MODEL_STATES], unit[MODEL_STATES];
     double t;
     int back, stop, ready, status;

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# looks.sh PLGEN: what looks for crossings at the end of a step evaluates what values and slopes of its expressions
-# read, and nothing else: a load that accelerates has a part in the slope of a velocity, and none in that of a position.
-# As TAP.
+# looks.sh PLGEN: what looks for crossings at the end of a step evaluates what values and slopes of its switching
+# functions read, and nothing else: a load that accelerates has a part in the slope of a velocity, and none in that of a
+# position. As TAP.
 set -u
 case $1 in /*) plgen=$1 ;; *) plgen=$PWD/$1 ;; esac
 . "${0%/*}/../tap.sh"

@@ -129,7 +129,7 @@ static bool run(struct subject *a, double t0, int count, const double *from)
     return good;
 }
 
-/* These go from crossing to crossing by exponential time differencing: tests/divided. */
+/* These go from crossing to crossing by exponential time differencing: tests/series_switching. */
 static bool is_event_split(const struct system *s, const char *scheme)
 {
     return strncmp(s->name, "functions", 9) == 0 && strncmp(scheme, "etd", 3) == 0;

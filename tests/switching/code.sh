@@ -141,9 +141,9 @@ result $? "crossings.c: freestanding"
 # ---- expressions as written; what a run that ends early says ----
 
 "$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    expression' >log
-printf '    expression 0: -w + x, breakpoints 0.1, 0.2\n    expression 1: 3*y, breakpoints 3, 6, 15\n' |
+printf '    switching function 0: -w + x, breakpoints 0.1, 0.2\n    switching function 1: 3*y, breakpoints 3, 6, 15\n' |
     diff - log >>log 2>&1
-result $? 'bump: sign and scale of expressions as first written'
+result $? 'bump: sign and scale of switching functions as first written'
 
 runtime_archive "$root/runtime"
 # told SPEC T MESSAGE: plmain ends with status 1 and this message, whatever the time in it

@@ -75,7 +75,7 @@ EOF
 result $? 'a drive that is free as a whole: no word of parts'
 printf '%s\n' "$stops" "x'' + 5*deadzone(x - y, -1, 1) = f" "y'' - 5*deadzone(x - y, -1, 1) = 0" \
     "z'' + z + max(z, 0) = f" | "$plgen" --explain - 2>&1 | grep 'independent parts' >log
-[ "$(cat log)" = 'Coordinates move as a whole: 2 independent parts have their regions together.' ]
+[ "$(cat log)" = 'Rigid-body modes: 2 independent parts have their regions together.' ]
 result $? 'a body that is free: it is said that regions are together'
 
 # Each as one alone, in float: by the search

@@ -25,7 +25,7 @@ made() {
 	if grep -q "^input" drawn.spec; then
 		defines=-DDRIVEN
 	fi
-	if grep -q "What may move as a whole" drawn_pl.c; then
+	if grep -q "Rigid-body modes" drawn_pl.c; then
 		defines="$defines -DRELATIVE"
 	fi
 	# shellcheck disable=SC2086

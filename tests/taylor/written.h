@@ -27,13 +27,13 @@
 #define PL_INPUTS 0
 #define PL_SEGMENTS 1
 #ifdef MODEL_BREAKPOINT
-#define PL_EXPRESSIONS 1
+#define PL_SWITCHING_FUNCTIONS 1
 #define PL_TERMS 1
 #define PL_CHANGES 2
 #define PL_MAX_EVENTS 8
 #define PL_MAX_SPLITS 500
 #else
-#define PL_EXPRESSIONS 0
+#define PL_SWITCHING_FUNCTIONS 0
 #define PL_TERMS 0
 #endif
 #define PL_CONTACTS 0
@@ -57,7 +57,7 @@
 
 #include "numbers.h"
 
-#if PL_EXPRESSIONS
+#if PL_SWITCHING_FUNCTIONS
 typedef struct PL(contact) {
     uint64_t total;
     int crossings, placed, interval[1];
@@ -66,16 +66,17 @@ typedef struct PL(contact) {
 
 static const int PL(column)[] = {0}, PL(breaks)[] = {1};
 static const real PL(breakpoint)[] = {MODEL_BREAKPOINT};
-static const pl_divided PL(divided) = {1, PL_COLUMNS, PL_ORDER, PL(column), PL(breaks), PL(breakpoint)};
+static const pl_series_switching PL(series_switching) = {1,          PL_COLUMNS, PL_ORDER,
+                                                         PL(column), PL(breaks), PL(breakpoint)};
 #endif
 
 typedef struct MODEL {
-    real y[MODEL_STATES], rest[MODEL_STATES], t0;
+    real y[MODEL_STATES], low[MODEL_STATES], t0;
     uint64_t k;
     int status, served, valid, most;
     real series[PL_ORDER + 1][MODEL_STATES], base[MODEL_STATES], next[MODEL_STATES], left[MODEL_STATES];
     real scale[MODEL_STATES], unit[MODEL_STATES];
-#if PL_EXPRESSIONS
+#if PL_SWITCHING_FUNCTIONS
     PL(contact) contact;
 #endif
 } MODEL;
@@ -86,7 +87,7 @@ static inline void PL(expand_from)(const MODEL *s, const real u[], const real sl
                                    const int interval[], const real y[], real c[][MODEL_STATES], real terms[])
 {
     (void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
-#if PL_EXPRESSIONS
+#if PL_SWITCHING_FUNCTIONS
     PL(series_in)(y, PL_H, interval, c);
     terms[0] = pl_magnitude(y[0]);
 #else

@@ -326,10 +326,10 @@ static void compare_loads(const struct tuned *m, const char *coeffs, const struc
     const struct emitter e = { .step = step, .model = step->model, .system = &step->branch->system };
     int phases = 0, growths = 0;
     for (int l = 0; l < step->branch->system.loads; l++) {
-        const struct wave *wave = step->branch->system.load[l].wave;
-        if (mpq_sgn(wave->w) != 0)
-            compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), wave->w, step->model->h);
-        if (mpq_sgn(wave->a) != 0)
+        const struct forcing *forcing = step->branch->system.load[l].forcing;
+        if (mpq_sgn(forcing->w) != 0)
+            compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), forcing->w, step->model->h);
+        if (mpq_sgn(forcing->a) != 0)
             compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), NULL, NULL);
     }
     if (phases != m->phase_step_entries || growths != m->growth_step_entries)
@@ -381,8 +381,8 @@ static void try_values(const struct tuned *m, const char *text, const bool *vari
     const double angle = largest_pole_angle(step);
     met.least_angle = met.compared == 0 ? angle : fmin(met.least_angle, angle);
     met.most_angle = worse(met.most_angle, angle);
-    compare_states(m, coeffs, step->branch->whole);
-    compare_columns(m, coeffs, step->branch->whole, &step->branch->system);
+    compare_states(m, coeffs, step->branch->full);
+    compare_columns(m, coeffs, step->branch->full, &step->branch->system);
     if (m->out_entries > 0)
         compare_outputs(m, coeffs, step, varies);
     compare_loads(m, coeffs, step);
@@ -478,8 +478,8 @@ static void try_nominal(const struct trial_batch *b)
     params_now = m->model->param_values;
     h_now = m->model->h;
     bound = 0;
-    compare_states(m, m->nominal, step->branch->whole);
-    compare_columns(m, m->nominal, step->branch->whole, &step->branch->system);
+    compare_states(m, m->nominal, step->branch->full);
+    compare_columns(m, m->nominal, step->branch->full, &step->branch->system);
     if (m->out_entries > 0)
         compare_outputs(m, m->nominal, step, b->varies);
     compare_loads(m, m->nominal, step);

@@ -240,7 +240,7 @@ static void compare_model(const struct model *there, const struct tuning *t, con
         }
     for (int l = 0; l < system->loads; l++)
         if (t->frequency[l] >= 0)
-            compare(value[t->frequency[l] * width], system->load[l].wave->w, "frequency of load", l, 0);
+            compare(value[t->frequency[l] * width], system->load[l].forcing->w, "frequency of load", l, 0);
     for (int o = 0; o < there->outputs; o++)
         for (int j = 0; j < t->x.size && t->output[o] >= 0; j++)
             compare(value[t->output[o] * width + j],

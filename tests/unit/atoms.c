@@ -242,9 +242,9 @@ static void dependence_is_of_what_is_named(void **state)
         for (int i = 0; i < a.form->terms; i++) {
             const struct basis *basis = &a.form->term[i].basis;
             const struct atom *atom = basis->atom;
-            if (atom && (atom->time != holds(atom, BASIS_WAVE) || atom->state != holds(atom, BASIS_COORD)))
+            if (atom && (atom->time != holds(atom, BASIS_FORCING) || atom->state != holds(atom, BASIS_COORD)))
                 fail_msg("case %d: a term of %s depends on time: %d, on a state: %d; it holds some: %d, %d", n,
-                         tree_text(a.tree), atom->time, atom->state, holds(atom, BASIS_WAVE),
+                         tree_text(a.tree), atom->time, atom->state, holds(atom, BASIS_FORCING),
                          holds(atom, BASIS_COORD));
             if ((atom && atom->time && !timed) || (is_velocity(&frame, basis) && !fast) ||
                 (!depends_on_time_only(basis) && !moves))
@@ -462,10 +462,10 @@ static double value_in_time(const struct form *form, double t)
     for (int i = 0; i < form->terms; i++) {
         const struct basis *basis = &form->term[i].basis;
         double value = basis->kind == BASIS_PI ? acos(-1) : 1;
-        assert_true(basis->kind <= BASIS_WAVE);
-        if (basis->kind == BASIS_WAVE) {
-            double angle = mpq_get_d(basis->wave->w) * t + mpq_get_d(basis->wave->p);
-            value = pow(t, basis->power) * exp(mpq_get_d(basis->wave->a) * t);
+        assert_true(basis->kind <= BASIS_FORCING);
+        if (basis->kind == BASIS_FORCING) {
+            double angle = mpq_get_d(basis->forcing->w) * t + mpq_get_d(basis->forcing->p);
+            value = pow(t, basis->power) * exp(mpq_get_d(basis->forcing->a) * t);
             value *= basis->sine ? sin(angle) : cos(angle);
         }
         sum += mpq_get_d(form->term[i].factor) * value;
@@ -488,8 +488,8 @@ static struct form *draw_load(double t, double *value)
     struct form *phase = form_sum(form_single((struct basis){ .kind = BASIS_PI }, q), form_constant(r), false);
     double angle = mpq_get_d(w) * t + acos(-1) * mpq_get_d(q) + mpq_get_d(r);
     *value = pow(t, power) * exp(mpq_get_d(a) * t) * (sine ? sin(angle) : cos(angle));
-    struct form *wave = collect_wave(&collector, sine, w, phase);
-    struct form *load = load_product(&collector, plain_wave(&collector, power, a), wave);
+    struct form *forcing = collect_forcing(&collector, sine, w, phase);
+    struct form *load = load_product(&collector, plain_forcing(&collector, power, a), forcing);
     mpq_clears(a, w, q, r, NULL);
     return load;
 }

@@ -107,7 +107,7 @@ static void kind_unknown(struct step *s) { s->program->action[0].kind = 17; }
 static void no_reads(struct step *s) { s->program->reads = NULL; }
 static void not_predicting(struct step *s) { s->program->predicts = false; }
 static void half_range(struct step *s) { action_of(s, ACTION_PREDICT, 0)->half = s->program->nodes; }
-static void input_gone(struct step *s) { s->branch->whole->input = NULL; }
+static void input_gone(struct step *s) { s->branch->full->input = NULL; }
 static void factor_gone(struct step *s) { s->program->assignment[1].term[0].factor = NULL; }
 static void target_range(struct step *s) { s->program->assignment[1].target = 4; }
 static void target_twice(struct step *s) { s->program->assignment[1].target = s->program->assignment[0].target; }
@@ -117,19 +117,19 @@ static void state_unmarked(struct step *s)
 {
     s->program->reads[s->program->assignment[0].term[0].operand.index] = false;
 }
-static void loads_unmarked(struct step *s) { memset(s->program->uses, 0, (size_t)s->branch->whole->columns); }
+static void loads_unmarked(struct step *s) { memset(s->program->uses, 0, (size_t)s->branch->full->columns); }
 static void carried(struct step *s) { s->program->assignment[0].carried = true; }
 static void tuned(struct step *s) { s->program->tuned = true; }
 static void loops(struct step *s) { s->program->loops = true; }
 static void group_twice(struct step *s) { s->program->group[0].state[1] = s->program->group[0].state[0]; }
 static void group_short(struct step *s) { s->program->groups--; }
-static void group_state(struct step *s) { s->program->group[0].state[0] = s->branch->whole->states; }
+static void group_state(struct step *s) { s->program->group[0].state[0] = s->branch->full->states; }
 static void group_load(struct step *s)
 {
     struct group *g = &s->program->group[0];
     g->load = ARRAY(int, 1);
     g->loads = 1;
-    g->load[0] = s->branch->whole->columns;
+    g->load[0] = s->branch->full->columns;
 }
 static void loop_in_order(struct step *s) { s->program->in_order = true; }
 static void region_gone(struct step *s) { s->branches--; }

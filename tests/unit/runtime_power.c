@@ -276,7 +276,7 @@ static void paired_block(paired *s, real *out)
 
 /* y triples at each step of 1 s and gains 1, after 4 s 2, after 9 s 0: jump.h without the generator */
 typedef struct tripled {
-    real y[1], rest[1];
+    real y[1], low[1];
     int segment, k;
 } tripled;
 typedef struct tripled_entry {
@@ -307,7 +307,7 @@ static void tripled_pass_steps(tripled *s, uint64_t n)
 
 static double tripled_sum(const tripled *s)
 {
-    return (double)s->y[0] + (double)s->rest[0];
+    return (double)s->y[0] + (double)s->low[0];
 }
 
 static void tripled_step(tripled *s)
@@ -315,7 +315,7 @@ static void tripled_step(tripled *s)
     const int before = s->segment;
     const double next = 3 * tripled_sum(s) + (before == 0 ? 1 : before == 1 ? 2 : 0);
     s->y[0] = (real)next;
-    s->rest[0] = (real)(next - (double)s->y[0]);
+    s->low[0] = (real)(next - (double)s->y[0]);
     s->k++;
     while (s->segment < 2 && tripled_until(s, s->segment) <= 0)
         s->segment++;
@@ -427,7 +427,7 @@ static void by_blocks(void **state)
 /* States halve at each step.  What is below `lowest` comes to rest where a multiple of 64 steps is passed: of `faded`
  * by parts, but for the last state; of `faded_whole` all at once, with what rounding took. */
 typedef struct faded {
-    real y[3], rest[3];
+    real y[3], low[3];
     int k;
 } faded;
 typedef struct faded faded_whole;
@@ -531,10 +531,10 @@ static void small_states_rest(void **state)
         assert_int_equal(s.y[1] < 0, !rests);
         assert_true(s.y[0] < 0 && s.y[2] > 0);
         s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 0.9);
-        assert_int_equal(s.y[0] < 0 && s.y[1] > 0 && s.y[2] > 0 && s.rest[1] > 0, !rests);
-        assert_int_equal(s.y[0] < 0 || s.y[1] > 0 || s.y[2] > 0 || s.rest[1] > 0, !rests);
+        assert_int_equal(s.y[0] < 0 && s.y[1] > 0 && s.y[2] > 0 && s.low[1] > 0, !rests);
+        assert_int_equal(s.y[0] < 0 || s.y[1] > 0 || s.y[2] > 0 || s.low[1] > 0, !rests);
         s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 1.1);
-        assert_true(s.y[0] < 0 && s.y[1] > 0 && s.rest[1] > 0);
+        assert_true(s.y[0] < 0 && s.y[1] > 0 && s.low[1] > 0);
     }
 }
 

@@ -273,8 +273,8 @@ struct form *form_of(const struct tree *tree)
         x[i] = form_of(tree->child[i]);
     switch (tree->kind) {
     case NUMBER:     return form_constant(tree->number);
-    case TIME:       return plain_wave(c, 1, NULL);
-    case WAVE:       return collect_wave(c, true, tree->number, form_number(1));
+    case TIME:       return plain_forcing(c, 1, NULL);
+    case WAVE:       return collect_forcing(c, true, tree->number, form_number(1));
     case STATE:      return state_form(tree->index, tree->order);
     case SUM:        return form_sum(x[0], x[1], false);
     case DIFFERENCE: return form_sum(x[0], x[1], true);

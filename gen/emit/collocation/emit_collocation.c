@@ -7,7 +7,7 @@
 #include "model/reads.h"
 #include "step/collocation/collocation.h"
 #include "step/contacts/series_contacts.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/regions/guards.h"
 
@@ -50,7 +50,7 @@ void emit_collocation_members(const struct emitter *e)
 	       "    int back;             /* steps of h since then */\n"
 	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
 	       "extrapolated */\n",
-	    rows(e), is_divided(e) ? ", 3: a crossing" : "");
+	    rows(e), has_switching(e) ? ", 3: a crossing" : "");
 	if (loads_change(e->system))
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
 	if (switches(e))
@@ -61,8 +61,8 @@ void emit_collocation_members(const struct emitter *e)
 		       "    int bounds, patience, run;  /* series in a row that stability bounds; how many may be; "
 		       "steps of the "
 		       "collocation */\n");
-	if (is_divided(e))
-		emit_divided_members(e);
+	if (has_switching(e))
+		emit_switching_members(e);
 }
 
 void emit_collocation_place(const struct emitter *e)
@@ -77,14 +77,14 @@ void emit_collocation_place(const struct emitter *e)
 /* 1/s: of the loads that what chooses formulas reads */
 static double frequency_of_choices(const struct emitter *e)
 {
-	const struct expansion *d = e->step->taylor.divided;
+	const struct expansion *d = e->step->taylor.switching;
 	double highest = 0;
-	for (int i = 0; d && i < d->expressions; i++) {
-		const struct form *form = d->expression[i].form;
+	for (int i = 0; d && i < d->functions; i++) {
+		const struct form *form = d->function[i].form;
 		const struct reads reads = reads_of(e->model, 1, &form);
 		for (int l = 0; l < e->system->loads; l++)
-			if (reads.load[l] && oscillates(e->system->load[l].wave))
-				highest = fmax(highest, mpq_get_d(e->system->load[l].wave->w));
+			if (reads.load[l] && oscillates(e->system->load[l].forcing))
+				highest = fmax(highest, mpq_get_d(e->system->load[l].forcing->w));
 	}
 	return highest;
 }
@@ -100,13 +100,13 @@ static double longest_step(const struct emitter *e)
 
 static void emit_limits(const struct emitter *e)
 {
-	const double solved = fmax(0.05 * tolerance(e), 4 * (e->model->asked.single ? FLT_EPSILON : DBL_EPSILON));
+	const double solved = fmax(0.05 * tolerance(e), 4 * (e->model->request.single ? FLT_EPSILON : DBL_EPSILON));
 	say(e, "#define PL_TOLERANCE %s\n"
 	       "#define PL_SOLVED %s  /* what Newton's method may leave */\n"
 	       "#define PL_CROWDED %s  /* [h]: loads are followed so far; 0: as far as the error lets a step go */\n",
 	    shortest(tolerance(e)), shortest(solved), shortest(longest_step(e)));
 	/* of a step that says where things go its inside is looked at, where what is left out has lower powers */
-	say(e, "#define PL_SHARE_OF_FIRST %s\n", is_divided(e) && !switches(e) ? "0.0625" : "1.0");
+	say(e, "#define PL_SHARE_OF_FIRST %s\n", has_switching(e) && !switches(e) ? "0.0625" : "1.0");
 	if (traces(e))
 		say(e, "#define PL_TRACE_READS %d  /* known numbers */\n"
 		       "#define PL_RISE %d.0  /* what an exponent may gain from node to node */\n"
@@ -239,33 +239,33 @@ static void emit_switching_limits(const struct emitter *e)
 /* Formulas that the state chooses, for passage.h */
 static void emit_passage_limits(const struct emitter *e)
 {
-	emit_divided_macros(e);
-	say_macro(e, "MAX_SPLITS", whole_text(meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS));
-	say_macro(e, "WATCH_READS", whole_text(watch_reads_known(e)));
+	emit_switching_macros(e);
+	say_macro(e, "MAX_SPLITS", integer_text(meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS));
+	say_macro(e, "WATCH_READS", integer_text(watch_reads_known(e)));
 	if (!meets_contacts(e))
 		return;
-	say_macro(e, "EVENT_ORDER", whole_text(e->step->taylor.divided->order));
-	say_macro(e, "EVENT_COLUMNS", whole_text(e->system->states + e->step->taylor.divided->columns));
+	say_macro(e, "EVENT_ORDER", integer_text(e->step->taylor.switching->order));
+	say_macro(e, "EVENT_COLUMNS", integer_text(e->system->states + e->step->taylor.switching->columns));
 	if (!switches(e))
-		say_macro(e, "CHOICES", whole_text(has_choices(by_series(e, e->step->taylor.divided))));
+		say_macro(e, "CHOICES", integer_text(has_choices(by_series(e, e->step->taylor.switching))));
 }
 
 static void emit_include(const struct emitter *e)
 {
-	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.divided;
+	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.switching;
 	emit_sizes(e, "radau.h", { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
 		   { "MODES", splits(e) ? e->step->collocation->modes : 0 },
 		   { "ENTRIES", e->step->collocation->motion->entries }, { "INPUTS", e->system->inputs },
 		   { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
-		   { "ORDER", x ? x->order : 0 }, { "EXPRESSIONS", d ? d->expressions : 0 },
+		   { "ORDER", x ? x->order : 0 }, { "SWITCHING_FUNCTIONS", d ? d->functions : 0 },
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
-		   { "WAYS", d ? d->expressions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
+		   { "WAYS", d ? d->functions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
 		   { "FLOORS", has_floors(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
-	if (is_divided(e))
+	if (has_switching(e))
 		emit_passage_limits(e);
 	if (switches(e))
 		emit_switching_limits(e);
@@ -287,11 +287,11 @@ void emit_collocation_step(const struct emitter *e)
 {
 	emit_stage_tables(e);
 	if (meets_contacts(e))
-		emit_series_functions(by_series(e, e->step->taylor.divided));
+		emit_series_functions(by_series(e, e->step->taylor.switching));
 	emit_motion(e);
 	emit_inputs_now(e);
-	if (is_divided(e)) {
-		emit_divided_tables(meets_contacts(e) ? by_series(e, e->step->taylor.divided) : e);
+	if (has_switching(e)) {
+		emit_switching_tables(meets_contacts(e) ? by_series(e, e->step->taylor.switching) : e);
 		emit_passing_table(e, stages(e) + meets_contacts(e));
 	}
 	if (meets_contacts(e)) {

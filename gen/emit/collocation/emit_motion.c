@@ -5,7 +5,7 @@
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/collocation/collocation.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
 
@@ -23,21 +23,21 @@ bool splits(const struct emitter *e)
 }
 
 /* What functions of the state are printed of: */
-enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_EXPRESSIONS, THE_ARGUMENTS };
+enum motion_part { THE_FORCES, THE_SLOPES_TOO, THE_SWITCHING, THE_ARGUMENTS };
 
 /* The forces and their slopes, what chooses formulas (without its constants), or the arguments of what polynomials may
  * not show; beside contacts there are only the latter */
 static const struct form **forms_of(const struct emitter *e, enum motion_part part, int *count)
 {
 	const struct motion *m = motion(e);
-	const struct expansion *d = e->step->taylor.divided, *u = e->step->taylor.unresolved;
+	const struct expansion *d = e->step->taylor.switching, *u = e->step->taylor.unresolved;
 	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
 	const bool by_series = meets_contacts(e) && part != THE_ARGUMENTS;
-	*count = by_series ? 0 : part == THE_EXPRESSIONS ? (d ? d->expressions : 0)
+	*count = by_series ? 0 : part == THE_SWITCHING ? (d ? d->functions : 0)
 		 : part == THE_ARGUMENTS ? (u ? u->unresolved_functions : 0) : m->coords + entries;
 	const struct form **form = ARRAY(const struct form *, (size_t)*count + 1);
 	for (int i = 0; i < *count; i++)
-		form[i] = part == THE_EXPRESSIONS ? d->expression[i].form
+		form[i] = part == THE_SWITCHING ? d->function[i].form
 			  : part == THE_ARGUMENTS ? u->unresolved[i].form
 			  : i < m->coords	  ? m->force[i] : m->entry[i - m->coords].slope;
 	return form;
@@ -60,14 +60,14 @@ static const struct form **all_forms(const struct emitter *e, int *count)
 /* Beside contacts what a part sets, from what the series of events has */
 static const struct tape *set_part(const struct emitter *e, struct recurrences *r, enum motion_part part)
 {
-	const struct expansion *x = e->step->taylor.divided;
-	if (part != THE_EXPRESSIONS) {
+	const struct expansion *x = e->step->taylor.switching;
+	if (part != THE_SWITCHING) {
 		set_motion(e->step, r, part == THE_SLOPES_TOO);
 		return tape_of_recurrences(r);
 	}
 	for (int i = 0; i < terms_of_events(e); i++)
-		recurrence_set(r, format("left[%d]", i), i < x->expressions ? x->expression[i].sequence
-					: x->contacts->watch[i - x->expressions].sequence, 0);
+		recurrence_set(r, format("left[%d]", i), i < x->functions ? x->function[i].sequence
+					: x->contacts->watch[i - x->functions].sequence, 0);
 	series_set_sizes(r, x, "excess");
 	return tape_of_recurrences(r);
 }
@@ -82,7 +82,7 @@ static struct reads reads_of_motion(const struct emitter *e)
 	int count;
 	const struct form **form = all_forms(e, &count);
 	struct reads r = reads_of(e->model, count, form);
-	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_EXPRESSIONS && meets_contacts(e); part++)
+	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_SWITCHING && meets_contacts(e); part++)
 		note_reads(&r, e, tape_of_part(e, part));
 	return r;
 }
@@ -186,7 +186,7 @@ static bool decides(const struct emitter *e)
 	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(e->model->equations.atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
-	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_EXPRESSIONS && meets_contacts(e); part++)
+	for (enum motion_part part = THE_SLOPES_TOO; part <= THE_SWITCHING && meets_contacts(e); part++)
 		any = any || tape_reads(tape_of_part(e, part), TAPE_TIME, -1, 1);
 	return any;
 }
@@ -210,7 +210,7 @@ static struct knowns knowns_of(const struct emitter *e, const struct reads *r)
 		add_known(&list, KNOWN_TIME, 0, 0);
 	if (decides(e))
 		add_known(&list, KNOWN_WHEN, 0, 0);
-	for (int j = 0; meets_contacts(e) && j < e->step->taylor.divided->slots; j++)
+	for (int j = 0; meets_contacts(e) && j < e->step->taylor.switching->slots; j++)
 		add_known(&list, KNOWN_SLOT, j, 0);
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && r->load[l]; k++)
@@ -281,7 +281,7 @@ static void emit_known_loads(const struct emitter *e, const struct reads *r)
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load *load = &e->system->load[l];
 		/* of a constant and t, the constant alone may drive */
-		const bool constant = is_polynomial(load->wave) && load->columns == 2 && !load_drives(e, l, 1);
+		const bool constant = is_polynomial(load->forcing) && load->columns == 2 && !load_drives(e, l, 1);
 		wanted[l] = r->load[l] || load_drives(e, l, 0);
 		time = time || (wanted[l] && load->powers > 1 && (r->load[l] || !constant));
 	}
@@ -369,18 +369,18 @@ static bool reads_known(const struct emitter *e, enum motion_part part)
 	int count;
 	const struct form **form = forms_of(e, part, &count);
 	struct reads read = reads_of(e->model, count, form);
-	if (meets_contacts(e) && part == THE_EXPRESSIONS)
+	if (meets_contacts(e) && part == THE_SWITCHING)
 		note_reads(&read, e, tape_of_part(e, part));
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->equations.atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;
-	const struct tape *t = meets_contacts(e) && part == THE_EXPRESSIONS ? tape_of_part(e, part) : NULL;
+	const struct tape *t = meets_contacts(e) && part == THE_SWITCHING ? tape_of_part(e, part) : NULL;
 	return any || (t && (tape_reads(t, TAPE_TIME, -1, 1) || tape_reads(t, TAPE_TABLE, -1, -1)));
 }
 
 bool watch_reads_known(const struct emitter *e)
 {
-	return reads_known(e, THE_EXPRESSIONS);
+	return reads_known(e, THE_SWITCHING);
 }
 
 bool trace_reads_known(const struct emitter *e)
@@ -405,7 +405,7 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 	const bool forces = part <= THE_SLOPES_TOO;
 	int count, driven = 0;
 	const struct form **form = forms_of(e, part, &count);
-	struct reading how = { .by_intervals = is_divided(e), .when = when_text(e, r) };
+	struct reading how = { .by_intervals = has_switching(e), .when = when_text(e, r) };
 	struct formulas *f = formulas_new(e, how, count, form);
 	struct tape *t = formulas_tape(f);
 	for (int i = 0; i < count; i++) {
@@ -415,7 +415,7 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 			value = tape_binary(t, TAPE_ADD, value, tape_operand(t, TAPE_TABLE, driven++, TABLE_NODE));
 		tape_set(t, slope ? format("slope[%d]", i - m->coords) : format("left[%d]", i), value, 15,
 			 forces && !slope ? e->model->names.coord[i] : NULL);
-		if (part == THE_EXPRESSIONS)
+		if (part == THE_SWITCHING)
 			tape_set(t, format("excess[%d]", i), formula_sizes(f, form[i]), 16, NULL);
 	}
 	return f;
@@ -436,7 +436,7 @@ static void close_motion(const struct emitter *e, const struct tape *t, const st
 /* Beside contacts */
 static void emit_series_body(const struct emitter *e, const struct reads *r, enum motion_part part)
 {
-	struct emitter here = *by_series(e, e->step->taylor.divided);
+	struct emitter here = *by_series(e, e->step->taylor.switching);
 	here.at_state = true;
 	struct recurrences *made = series_new(&here);
 	const struct tape *t = set_part(e, made, part);
@@ -445,7 +445,7 @@ static void emit_series_body(const struct emitter *e, const struct reads *r, enu
 	emit_motion_locals(&here, r, &read);
 	emit_series_tape(&here, made);
 	say(e, "%s%s", tape_reads(t, TAPE_TIME, -1, 1) || !decides(e) ? "" : "    (void)when;\n",
-	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->taylor.divided->slots ? "" : "    (void)force;\n");
+	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->taylor.switching->slots ? "" : "    (void)force;\n");
 	close_motion(e, t, &read, tape_reads(t, TAPE_STATE, -1, -1));
 }
 
@@ -470,7 +470,7 @@ static void emit_part(const struct emitter *e, const struct reads *r, enum motio
 		[THE_FORCES] = { "The highest derivatives at state y", "forces", "" },
 		[THE_SLOPES_TOO] = { "The highest derivatives at state y, and their Jacobian where it is not 0",
 				     "linearize", ", double slope[]" },
-		[THE_EXPRESSIONS] = { "The expressions that choose formulas, at state y, and the size of what they are "
+		[THE_SWITCHING] = { "The expressions that choose formulas, at state y, and the size of what they are "
 				      "summed from", "watch", ", double excess[]" },
 		[THE_ARGUMENTS] = { "The arguments of functions that polynomials may not show, at state y", "trace",
 				    "" }
@@ -492,8 +492,8 @@ void emit_motion(const struct emitter *e)
 	emit_part(e, &r, THE_SLOPES_TOO);
 	if (splits(e))
 		emit_part(e, &r, THE_FORCES);
-	if (is_divided(e))
-		emit_part(e, &r, THE_EXPRESSIONS);
+	if (has_switching(e))
+		emit_part(e, &r, THE_SWITCHING);
 	if (traces(e))
 		emit_part(e, &r, THE_ARGUMENTS);
 }

@@ -3,7 +3,7 @@
  * series anew. */
 #include "emit/series/series.h"
 #include "emit/text.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
 
@@ -11,12 +11,12 @@
 
 static const struct contacts *contacts(const struct emitter *e)
 {
-	return e->step->taylor.divided->contacts;
+	return e->step->taylor.switching->contacts;
 }
 
 bool meets_contacts(const struct emitter *e)
 {
-	return e->step->taylor.divided && contacts(e);
+	return e->step->taylor.switching && contacts(e);
 }
 
 /* ---- tables ---- */
@@ -26,9 +26,9 @@ static int watch_or_none(int watch)
 	return watch == NONE ? -1 : watch;
 }
 
-static int rank_in(const struct emitter *e, int expression, int breakpoint)
+static int rank_in(const struct emitter *e, int function, int breakpoint)
 {
-	return e->step->taylor.divided->expression[expression].rank[breakpoint];
+	return e->step->taylor.switching->function[function].rank[breakpoint];
 }
 
 /* Their columns in the series, or one behind the other */
@@ -60,7 +60,7 @@ static void emit_holds(const struct emitter *e)
 	int *row = ARRAY(int, 6 * (size_t)rows), none[] = { 0, 0, 0, -1, -1, -1 };
 	for (int i = 0; i < c->holds; i++) {
 		const struct series_hold *h = &c->hold[i];
-		const int of[] = { h->expression, rank_in(e, h->expression, h->breakpoint) + 1, h->velocity,
+		const int of[] = { h->function, rank_in(e, h->function, h->breakpoint) + 1, h->velocity,
 				   watch_or_none(h->pull[0]), watch_or_none(h->pull[1]), watch_or_none(h->impact) };
 		memcpy(row + 6 * i, of, sizeof of);
 	}
@@ -78,8 +78,8 @@ static void emit_series_impacts(const struct emitter *e)
 		       c->series_impacts > 0 ? c->series_impacts : 1);
 	for (int i = 0; i < c->series_impacts; i++) {
 		const struct series_impact *s = &c->series_impact[i];
-		int rank = rank_in(e, s->expression, s->breakpoint) + (s->hold != NONE && !s->upward);
-		say(e, "    {%d, %d, %d, %d, %d, %d, %d, %d, %d, %s, %s},\n", s->expression, rank, s->upward,
+		int rank = rank_in(e, s->function, s->breakpoint) + (s->hold != NONE && !s->upward);
+		say(e, "    {%d, %d, %d, %d, %d, %d, %d, %d, %d, %s, %s},\n", s->function, rank, s->upward,
 		    watch_or_none(s->hold), s->place, s->speed, s->jump, s->still, s->jumps,
 		    shortest(s->restitution), shortest(s->per));
 	}
@@ -121,6 +121,6 @@ void emit_event_tables(const struct emitter *e)
 
 void emit_events_along(const struct emitter *e)
 {
-	emit_watches(e, "along_watch", e->step->taylor.divided->expressions);
+	emit_watches(e, "along_watch", e->step->taylor.switching->functions);
 	emit_events(e, "along", "passing", "along_watch");
 }

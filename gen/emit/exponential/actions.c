@@ -20,7 +20,7 @@ static void emit_combination(const struct emitter *e, const struct action *a)
 		    a->target,
 		    combination_at(a, "i"));
 	for (int c = 0; c < e->model->remainder.force_columns && !loops; c++)
-		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, whole_text(c)));
+		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, integer_text(c)));
 }
 
 /* y(tau) of a table, with Phi y or from rest */
@@ -67,8 +67,8 @@ static void emit_sum(const struct emitter *e, const struct action *a)
 
 static const char *time_of(const struct emitter *e, mpq_srcptr fraction)
 {
-	bool whole = mpq_cmp_ui(fraction, 1, 1) == 0;
-	return whole ? format("%s_H", e->upper) : shortest(time_in_step(e->model, fraction));
+	bool full = mpq_cmp_ui(fraction, 1, 1) == 0;
+	return full ? format("%s_H", e->upper) : shortest(time_in_step(e->model, fraction));
 }
 
 /* ---- actions ---- */

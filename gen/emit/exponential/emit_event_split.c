@@ -5,7 +5,7 @@
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "step/regions/guards.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 
 static const struct event_split *event_split_of(const struct emitter *e)
@@ -20,7 +20,7 @@ void emit_event_split_members(const struct emitter *e)
 	int count = terms_of_events(e);
 	if (e->step->normal)
 		emit_normal_members(e);
-	emit_divided_members(e);
+	emit_switching_members(e);
 	if (e->system->inputs == 0 && !loads_change(e->system))
 		say(e, "    double end[2][%d], terms[%d];  /* of what is watched at the end of the last step */\n"
 		       "    int ended;            /* they are there */\n", count, count);
@@ -92,7 +92,7 @@ static void emit_acting(const struct emitter *e)
 
 /* ---- a whole step ---- */
 
-static void emit_whole(const struct emitter *e)
+static void emit_full(const struct emitter *e)
 {
 	if (e->step->normal) {
 		emit_mode_tables(e);
@@ -103,7 +103,7 @@ static void emit_whole(const struct emitter *e)
 	if (e->step->program->predicts)
 		emit_predictor(e);
 	open_function(e, "The scheme's own step, with the formulas of these intervals",
-		      "static void $n_whole($n *s, const double u[], const double start[], const double slope[],\n"
+		      "static void $n_full_step($n *s, const double u[], const double start[], const double slope[],\n"
 		      "    double when, const int interval[])");
 	emit_actions_of_step(e);
 	close_function(e, "u start slope when interval");
@@ -115,7 +115,7 @@ static void emit_algorithm(const struct emitter *e)
 	emit_sizes(e, "event_split.h", { "STATES", e->system->states }, { "ACTING", acting_entries(e) },
 		   { "FORCES", e->model->remainder.force_columns }, { "CARRIES", e->step->carried.count },
 		   { "ORDER", x->order }, { "COLUMNS", e->system->states + x->columns },
-		   { "EXPRESSIONS", x->expressions }, { "TERMS", terms_of_events(e) },
+		   { "SWITCHING_FUNCTIONS", x->functions }, { "TERMS", terms_of_events(e) },
 		   { "CONTACTS", meets_contacts(e) }, { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments },
 		   { "CHOICES", has_choices(by_series(e, e->step->event_split->event_check)) },
@@ -123,7 +123,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "FAST_PATH", event_split_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });
 	if (e->step->normal)
 		emit_mode_sizes(e);
-	emit_divided_macros(by_series(e, e->step->event_split->event_check));
+	emit_switching_macros(by_series(e, e->step->event_split->event_check));
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
 	       "#include \"event_split.h\"\n", shortest(event_split_of(e)->fastest),
@@ -138,7 +138,7 @@ void emit_event_split_step(const struct emitter *e)
 	emit_frozen_function(by_series(e, e->step->event_split->forces));
 	emit_ends_function(by_series(e, e->step->event_split->ends));
 	emit_expand_from(l);
-	emit_divided_tables(l);
+	emit_switching_tables(l);
 	emit_passing_table(e, CUBIC + meets_contacts(e));
 	if (meets_contacts(e)) {
 		emit_event_tables(e);
@@ -147,7 +147,7 @@ void emit_event_split_step(const struct emitter *e)
 	emit_inputs_now(e);
 	emit_flow_tables(e);
 	emit_acting(e);
-	emit_whole(e);
+	emit_full(e);
 	emit_pass_time(e);
 	emit_algorithm(e);
 	emit_serving_step(e);

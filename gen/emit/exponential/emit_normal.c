@@ -15,48 +15,48 @@
 
 /* ---- known loads, to which modes respond exactly ---- */
 
-static int wave_values(const struct emitter *e)
+static int forcing_values(const struct emitter *e)
 {
-	return 2 * e->model->remainder.split->waves;
+	return 2 * e->model->remainder.split->forcings;
 }
 
 static bool is_there(const struct emitter *e, int value)
 {
-	return value % 2 == 0 || oscillates(e->model->remainder.split->wave[value / 2].wave);
+	return value % 2 == 0 || oscillates(e->model->remainder.split->forcing[value / 2].forcing);
 }
 
-/* NAME_waves: cos and sin of each now, times e^{a t} */
-static void emit_waves(const struct emitter *e)
+/* NAME_forcings: cos and sin of each now, times e^{a t} */
+static void emit_forcings(const struct emitter *e)
 {
-	int count = wave_values(e);
+	int count = forcing_values(e);
 	const struct form **form = ARRAY(const struct form *, (size_t)count + 1);
 	if (count == 0)
 		return;
 	for (int k = 0; k < count; k++)
-		form[k] = form_unit((struct basis){ .kind = BASIS_WAVE,
-						    .wave = e->model->remainder.split->wave[k / 2].wave,
+		form[k] = form_unit((struct basis){ .kind = BASIS_FORCING,
+						    .forcing = e->model->remainder.split->forcing[k / 2].forcing,
 						    .sine = k % 2 && is_there(e, k) });
 	struct reads r = reads_of(e->model, count, form);
-	open_function(e, "Known loads now", "static void $n_waves(const $n *s, double wave[%d])", count);
+	open_function(e, "Known loads now", "static void $n_forcings(const $n *s, double forcing[%d])", count);
 	emit_load_states(e, r.load, false);
 	for (int k = 0; k < count; k++)
-		say(e, "    wave[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
+		say(e, "    forcing[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
 	close_function(e, "");
 }
 
-static void add_waves(const struct emitter *e, struct summands *s, const char *table, int row)
+static void add_forcings(const struct emitter *e, struct summands *s, const char *table, int row)
 {
-	for (int k = 0; k < wave_values(e); k++)
+	for (int k = 0; k < forcing_values(e); k++)
 		if (is_there(e, k))
-			add_summand(s, format("%s[%d][i] * wave[%d]", table, 2 * k + row, k));
+			add_summand(s, format("%s[%d][i] * forcing[%d]", table, 2 * k + row, k));
 }
 
 /* Of a step by columns of one matrix, theirs from `first` on */
-static void add_waves_of_columns(const struct emitter *e, struct summands *s, int first)
+static void add_forcings_of_columns(const struct emitter *e, struct summands *s, int first)
 {
-	for (int k = 0; k < wave_values(e); k++)
+	for (int k = 0; k < forcing_values(e); k++)
 		if (is_there(e, k))
-			add_summand(s, spell(e, "$n_steady[%d][i] * wave[%d]", first + k, k));
+			add_summand(s, spell(e, "$n_steady[%d][i] * forcing[%d]", first + k, k));
 }
 
 /* ---- a stage: modes at a node, or after a step ---- */
@@ -80,18 +80,18 @@ static void emit_node_tables(const struct emitter *e)
 	const struct normal *m = normal_of_step(e);
 	const size_t stages = (size_t)m->collocation.stages;
 	const double **flow = ARRAY(const double *, stages), **weight = ARRAY(const double *, stages);
-	const double **wave = ARRAY(const double *, stages);
+	const double **forcing = ARRAY(const double *, stages);
 	for (size_t i = 0; i < stages; i++) {
 		flow[i] = m->collocation.stage[i].flow;
 		weight[i] = m->collocation.stage[i].weight;
-		wave[i] = m->collocation.stage[i].wave;
+		forcing[i] = m->collocation.stage[i].forcing;
 	}
 	emit_stage_table(e, "Modes at each node from those at the step's start", "flow", m->collocation.stages, 4,
 			 flow);
 	emit_stage_table(e, "... and from modal forces at all nodes: weights of the collocation", "weight",
 			 m->collocation.stages, 2 * (m->collocation.stages + 1), weight);
-	emit_stage_table(e, "... and from known loads at its start", "of_wave", m->collocation.stages,
-			 2 * wave_values(e), wave);
+	emit_stage_table(e, "... and from known loads at its start", "of_forcing", m->collocation.stages,
+			 2 * forcing_values(e), forcing);
 }
 
 /* e eta + s eta', de eta + ds eta', and weights of forces */
@@ -102,17 +102,17 @@ static const char *stage_sum(const struct emitter *e, int row, int forces, const
 	add_summand(&s, format("flow[%d][i] * s->rate[i]", 2 * row + 1));
 	for (int k = 0; k < forces; k++)
 		add_summand(&s, format("weight[%d][i] * %s", 2 * k + row, format(force, k)));
-	add_waves(e, &s, "of_wave", row);
+	add_forcings(e, &s, "of_forcing", row);
 	return sum_of(&s, 21);
 }
 
 /* Over a whole step, from past forces, rows of the last node serve but for the weights of forces. */
 static void emit_rows_of_node(const struct emitter *e, const char *node, const char *weight)
 {
-	const char *const row[] = { format("flow[%s]", node), weight, format("of_wave[%s]", node) };
-	for (int i = 0; i < 2 + (wave_values(e) > 0); i++)
+	const char *const row[] = { format("flow[%s]", node), weight, format("of_forcing[%s]", node) };
+	for (int i = 0; i < 2 + (forcing_values(e) > 0); i++)
 		say(e, "    const double (*const %s)[%d] = $n_%s[which];\n",
-		    i == 0 ? "flow" : i == 1 ? "weight" : "of_wave", normal_of_step(e)->width, row[i]);
+		    i == 0 ? "flow" : i == 1 ? "weight" : "of_forcing", normal_of_step(e)->width, row[i]);
 }
 
 /* Modes in a loop, and what the force is expected to be; NULL: it is not asked. The end of the function */
@@ -125,7 +125,7 @@ static void emit_stage_sums(const struct emitter *e, int forces, const char *for
 	       "%s"
 	       "    }\n", normal_of_step(e)->width, stage_sum(e, 0, forces, force), stage_sum(e, 1, forces, force),
 	    expected ? format("        expected[i] = %s;\n", expected) : "");
-	close_function(e, "wave");
+	close_function(e, "forcing");
 }
 
 static void emit_node_modes(const struct emitter *e)
@@ -134,7 +134,7 @@ static void emit_node_modes(const struct emitter *e)
 	emit_node_tables(e);
 	open_function(e, NULL,
 		      "static inline void $n_node_modes(const $n *s, int which, int node,\n"
-		      "    double force[%d][%d], const double wave[], double eta[], double rate[])",
+		      "    double force[%d][%d], const double forcing[], double eta[], double rate[])",
 		      m->collocation.stages + 1, m->width);
 	emit_rows_of_node(e, "node - 1", "weight[node - 1]");
 	emit_stage_sums(e, m->collocation.stages + 1, "force[%d][i]", NULL);
@@ -170,7 +170,7 @@ static void emit_predict(const struct emitter *e)
 		   (const int[]){ m->operators, 2 * m->multistep.points, m->width }, m->multistep.step.weight, NULL);
 	emit_array(e, "What a force adds by its excess over the extrapolated one", "correct", 3,
 		   (const int[]){ m->operators, 2, m->width }, m->multistep.correct, NULL);
-	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double wave[],\n"
+	open_function(e, NULL, "static inline void $n_predict(const $n *s, int which, const double forcing[],\n"
 		      "    double eta[], double rate[], double expected[])");
 	emit_rows_of_node(e, format("%d", m->collocation.stages - 1), "past_weight");
 	for (int k = 0; k < m->multistep.points; k++)
@@ -209,17 +209,17 @@ static void emit_still(const struct emitter *e)
 	}
 	emit_array(e, "Frequencies that amplitudes are scaled by, and 1 over them", "omega", 2,
 		   (const int[]){ 2, width }, omega, NULL);
-	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", wave_values(e) ? ", loads" : ""),
+	emit_array(e, format("A step over [omega eta, eta', 1%s], by columns", forcing_values(e) ? ", loads" : ""),
 		   "steady", 2, (const int[]){ steady_size(e->model), 2 * width }, m->steady.flow, NULL);
-	open_function(e, NULL, "static inline void $n_still(const double x[], const double wave[], double sum[])");
+	open_function(e, NULL, "static inline void $n_still(const double x[], const double forcing[], double sum[])");
 	say(e, "    int i;\n");
 	for (int j = 0; j < 2 * m->modes; j++)
 		add_summand(&s, spell(e, "$n_steady[%d][i] * x[%d]", j,
 				      (j < m->modes ? 0 : width) + m->place[j % m->modes]));
 	add_summand(&s, spell(e, "$n_steady[%d][i]", 2 * m->modes));
-	add_waves_of_columns(e, &s, 2 * m->modes + 1);
+	add_forcings_of_columns(e, &s, 2 * m->modes + 1);
 	say_row_sum(e, "sum[i]", 2 * width, &s);
-	close_function(e, "wave");
+	close_function(e, "forcing");
 }
 
 /* ---- states inside a step ---- */
@@ -227,35 +227,36 @@ static void emit_still(const struct emitter *e)
 /* The next term of known load k, by `by`; `alone`: it has no sin */
 static void emit_next_term(const struct emitter *e, int k, bool alone)
 {
-	const struct wave *wave = e->model->remainder.split->wave[k].wave;
-	const char *a = shortest(equation_number(e->model, wave->a).value);
-	const char *w = shortest(equation_number(e->model, wave->w).value);
+	const struct forcing *forcing = e->model->remainder.split->forcing[k].forcing;
+	const char *a = shortest(equation_number(e->model, forcing->a).value);
+	const char *w = shortest(equation_number(e->model, forcing->w).value);
 	const int c = 2 * k, s = c + 1;
 	if (alone) {
 		say(e, "    swing[%d] *= by * %s;\n"
-		       "    wave[%d] += swing[%d];\n", c, a, c, c);
+		       "    forcing[%d] += swing[%d];\n", c, a, c, c);
 		return;
 	}
-	const bool grows = mpq_sgn(wave->a) != 0;
+	const bool grows = mpq_sgn(forcing->a) != 0;
 	say(e, "    before = swing[%d];\n"
 	       "    swing[%d] = by * (%s%s * swing[%d]);\n"
 	       "    swing[%d] = by * (%s%s * before);\n"
-	       "    wave[%d] += swing[%d];\n"
-	       "    wave[%d] += swing[%d];\n", c, c, grows ? format("%s * before - ", a) : "-", w, s, s,
+	       "    forcing[%d] += swing[%d];\n"
+	       "    forcing[%d] += swing[%d];\n", c, c, grows ? format("%s * before - ", a) : "-", w, s, s,
 	    grows ? format("%s * swing[%d] + ", a, s) : "", w, c, c, s, s);
 }
 
 static void emit_swing(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const int count = wave_values(e);
+	const int count = forcing_values(e);
 	struct summands sum = { 0 };
 	if (count == 0)
 		return;
 	emit_array(e, "Modal forces of known loads", "swing", 3, (const int[]){ m->operators, count, m->width },
-		   m->wave,
+		   m->forcing,
 		   NULL);
-	open_function(e, NULL, "static inline void $n_swing_on(int which, double by, double wave[], double swing[],\n"
+	open_function(e, NULL,
+		      "static inline void $n_swing_on(int which, double by, double forcing[], double swing[],\n"
 		      "    double force[])");
 	say(e, "    double before = 0.0;\n"
 	       "    int i;\n");
@@ -302,10 +303,10 @@ void emit_mode_sizes(const struct emitter *e)
 				     { "SWEEPS", m->collocation.sweeps },
 				     { "FIRST_SWEEPS", m->collocation.first_sweeps },
 				     { "FUNCTIONS", 0 },
-				     { "WAVES", 0 },
+				     { "FORCINGS", 0 },
 				     { "OPERATORS", 1 } };
 	for (size_t i = 0; i < sizeof size / sizeof *size; i++)
-		say_macro(e, size[i].name, whole_text(size[i].value));
+		say_macro(e, size[i].name, integer_text(size[i].value));
 }
 
 /* Tables and functions of the same */
@@ -325,7 +326,8 @@ static void emit_algorithm(const struct emitter *e)
 	emit_sizes(e, "normal.h", { "MODES", m->modes }, { "WIDTH", m->width }, { "POINTS", m->multistep.points },
 		   { "TWICE", m->multistep.twice }, { "STAGES", m->collocation.stages },
 		   { "SWEEPS", m->collocation.sweeps }, { "FIRST_SWEEPS", m->collocation.first_sweeps },
-		   { "FUNCTIONS", functions_of_time(e) }, { "WAVES", wave_values(e) }, { "OPERATORS", m->operators },
+		   { "FUNCTIONS", functions_of_time(e) }, { "FORCINGS", forcing_values(e) },
+		   { "OPERATORS", m->operators },
 		   { "SELECTOR", e->model->remainder.split->selector - 1 }, { "SEGMENTS", e->system->segments },
 		   { "STEADY", m->steady.flow != NULL }, { "STEADY_IN", m->steady.schedule },
 		   { "AT", e->step->series.emitted }, { "TERMS", m->within.terms }, { "TURNS", turns_within(e) },
@@ -341,7 +343,7 @@ void emit_normal_tables(const struct emitter *e)
 	if (functions_of_time(e))
 		emit_function_values(e);
 	emit_forces(e);
-	emit_waves(e);
+	emit_forcings(e);
 	emit_schedule(e);
 	emit_node_modes(e);
 	if (m->multistep.points)

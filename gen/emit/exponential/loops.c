@@ -8,7 +8,7 @@
 /* Columns of the loads that act, in the order of a table */
 static int acting_columns(const struct emitter *e, int **column)
 {
-	int count = 0, all = e->step->branch->whole->columns;
+	int count = 0, all = e->step->branch->full->columns;
 	*column = ARRAY(int, (size_t)all + 1);
 	for (int k = 0; k < all; k++)
 		if (e->step->program->uses[k])
@@ -52,7 +52,7 @@ static void emit_table(const struct emitter *e, const char *name, const char *no
 
 static void emit_phi_table(const struct emitter *e, int t)
 {
-	const struct wanted *wanted = &e->step->branch->whole->wanted[t];
+	const struct wanted *wanted = &e->step->branch->full->wanted[t];
 	struct picked Phi = { .kind = PICK_PHI, .table = t, .columns = e->system->states };
 	if (t > 0)
 		emit_table(e, wanted->name, format("e^{A tau}, tau = %s h", exact_text(wanted->fraction)), 0, Phi);
@@ -62,8 +62,8 @@ static void emit_phi_table(const struct emitter *e, int t)
 
 static void emit_tables_of(const struct emitter *e, int t)
 {
-	const struct wanted *wanted = &e->step->branch->whole->wanted[t];
-	int *column, columns = acting_columns(e, &column), inputs = e->step->branch->whole->inputs;
+	const struct wanted *wanted = &e->step->branch->full->wanted[t];
+	int *column, columns = acting_columns(e, &column), inputs = e->step->branch->full->inputs;
 	struct picked load = { .kind = PICK_LOAD, .table = t, .columns = columns, .column = column };
 	struct picked input = { .kind = PICK_INPUT, .table = t, .columns = inputs };
 	if (wanted->Phi)
@@ -110,14 +110,14 @@ const char *matrix_text(const struct emitter *e, const char *name)
 static const char *phi_text(const struct emitter *e, int t)
 {
 	if (t > 0)
-		return matrix_text(e, e->step->branch->whole->wanted[t].name);
+		return matrix_text(e, e->step->branch->full->wanted[t].name);
 	const char *first = format("%s[0]", stepped_table(e, "Phi"));
 	return many_operators(e) ? format("which ? %s_full[which - 1][0] : %s", e->name, first) : first;
 }
 
 static const char *load_text(const struct emitter *e, int t)
 {
-	const char *name = format("%s_%s_load", e->name, e->step->branch->whole->wanted[t].name);
+	const char *name = format("%s_%s_load", e->name, e->step->branch->full->wanted[t].name);
 	if (!loads_change(e->system))
 		return format("%s[%s][0]", name, operator_index(e));
 	if (many_operators(e))
@@ -130,7 +130,7 @@ static const char *load_text(const struct emitter *e, int t)
 /* load, input: what the tables' columns multiply */
 void emit_operands(const struct emitter *e)
 {
-	int *column, columns = acting_columns(e, &column), inputs = e->step->branch->whole->inputs;
+	int *column, columns = acting_columns(e, &column), inputs = e->step->branch->full->inputs;
 	const char **text = ARRAY(const char *, (size_t)(columns + inputs) + 1);
 	for (int k = 0; k < columns; k++)
 		text[k] = column_operand(e, column[k]);

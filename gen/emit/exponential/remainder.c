@@ -60,13 +60,13 @@ static bool is_asked(const struct emitter *e, int force_column)
 static struct reads reads_of_remainder(const struct emitter *e)
 {
 	int force_columns = e->model->remainder.force_columns, all = force_columns * e->model->schedule.operators,
-		asked = 0;
+		requested = 0;
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
 	for (int k = 0; k < e->model->schedule.operators; k++)
 		for (int c = 0; c < force_columns; c++)
 			if (is_asked(e, c))
-				form[asked++] = e->model->schedule.operator[k].left[c];
-	return reads_of(e->model, asked, form);
+				form[requested++] = e->model->schedule.operator[k].left[c];
+	return reads_of(e->model, requested, form);
 }
 
 static bool needs_node(const struct emitter *e, const struct reads *r)

@@ -9,7 +9,7 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 			 const struct coefficient *factor)
 {
 	const char **note = ARRAY(const char *, (size_t)rows);
-	const int columns = e->step->branch->whole->columns, size[] = { segments, rows, columns };
+	const int columns = e->step->branch->full->columns, size[] = { segments, rows, columns };
 	const int count = segments * rows * columns;
 	double *value = ARRAY(double, (size_t)count);
 	for (int i = 0; i < count; i++)
@@ -23,7 +23,7 @@ static void print_forced(const struct emitter *e, const char *name, const char *
 /* A change at the end of a step */
 static void emit_rebase(const struct emitter *e)
 {
-	int count = e->step->branch->whole->columns;
+	int count = e->step->branch->full->columns;
 	open_function(e, NULL, "static void $n_rebase($n *s)");
 	emit_load_states(e, e->step->forced->load, false);
 	const char **text = ARRAY(const char *, (size_t)count);
@@ -54,7 +54,7 @@ static void emit_forced_tables(const struct emitter *e)
 /* The states as they are kept, and as they are written, are read by one table. */
 static void emit_forced_loads(const struct emitter *e)
 {
-	int count = e->step->branch->whole->columns;
+	int count = e->step->branch->full->columns;
 	open_function(e, "Load states that the step leaves out, now; of the others 0",
 		      "static void $n_forced_loads(const $n *s, double load[%d])", count);
 	emit_rotated_loads(e, e->step->forced->load, false);

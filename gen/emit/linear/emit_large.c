@@ -447,7 +447,7 @@ static void emit_driven(const struct emitter *e, const struct group *g, int inde
 	for (int k = 0; k < acting(g); k++) {
 		const struct operand operand = acting_operand(g, k);
 		const bool input = operand.kind == OPERAND_INPUT;
-		text[k] = acting_text[operand.index + (input ? e->step->branch->whole->columns : 0)];
+		text[k] = acting_text[operand.index + (input ? e->step->branch->full->columns : 0)];
 	}
 	say_vector(e, format("driven%d", index), acting(g), text);
 }

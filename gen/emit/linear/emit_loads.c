@@ -208,7 +208,7 @@ void emit_load_advance(const struct emitter *e, const char *steps)
 
 const char *load_operand(const struct emitter *e, int load, int column)
 {
-	if (is_polynomial(e->system->load[load].wave) && column < 2)
+	if (is_polynomial(e->system->load[load].forcing) && column < 2)
 		return column ? "t" : NULL;
 	return format("load%d[%d]", load + 1, column);
 }
@@ -225,7 +225,7 @@ static const char *later(const struct emitter *e, const char *what, const char *
 	int load = 0;
 	while ((strcmp(what, "phase") == 0 ? e->phase : e->growth)[load] != i)
 		load++;
-	const char *falls = mpq_sgn(e->system->load[load].wave->a) < 0 ? "1, " : "0, ";
+	const char *falls = mpq_sgn(e->system->load[load].forcing->a) < 0 ? "1, " : "0, ";
 	return format("%s_add(s->%s[%d], %s_at(&%s_%s_rate[%d], %s%s))", type, what, i, type, e->name, what, i,
 		      strcmp(what, "phase") == 0 ? "" : falls, e->after);
 }
@@ -267,7 +267,7 @@ void emit_load_array(const struct emitter *e, int l)
 void emit_load_powers(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
-	int trig = oscillates(load->wave) ? 2 : 1;
+	int trig = oscillates(load->forcing) ? 2 : 1;
 	for (int k = trig; k < load->columns; k++)
 		say(e, "    %s = t * %s;\n", load_cell(e, l, k), load_cell(e, l, k - trig));
 }
@@ -275,7 +275,7 @@ void emit_load_powers(const struct emitter *e, int l)
 void emit_load_functions(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
-	bool turns = oscillates(load->wave), grows = e->growth[l] >= 0;
+	bool turns = oscillates(load->forcing), grows = e->growth[l] >= 0;
 	const char *pair = e->at_refresh ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
 	if (turns)
 		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_turn", e->phase[l]), pair);
@@ -294,7 +294,7 @@ void emit_load_functions(const struct emitter *e, int l)
 static void emit_one_load(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
-	if (is_polynomial(load->wave) && load->powers <= 2)
+	if (is_polynomial(load->forcing) && load->powers <= 2)
 		return;                         /* 1 and t need no array */
 	emit_load_array(e, l);
 	emit_load_functions(e, l);
@@ -312,6 +312,6 @@ void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_t
 	if (growth)
 		say(e, "    double growth;\n");
 	for (int l = 0; l < e->system->loads; l++)
-		if (loads[l] && !(is_polynomial(e->system->load[l].wave) && e->system->load[l].powers == 1))
+		if (loads[l] && !(is_polynomial(e->system->load[l].forcing) && e->system->load[l].powers == 1))
 			emit_one_load(e, l);
 }

@@ -87,19 +87,19 @@ static void emit_output_modes(const struct emitter *e)
 static void emit_dot(const struct emitter *e)
 {
 	enum { SUMS = 8 };
-	const int states = e->system->states, whole = states / SUMS * SUMS;
+	const int states = e->system->states, full = states / SUMS * SUMS;
 	open_function(e, NULL, "static double $n_dot(const double row[$N_STATES], const double x[$N_STATES])");
 	say(e, "    double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0, f = 0.0, g = 0.0, h = 0.0;\n");
-	if (whole)
+	if (full)
 		say(e, "    int i;\n"
-		       "    for (i = 0; i < %d; i += %d) {\n", whole, SUMS);
-	for (int k = 0; k < SUMS && whole; k++)
+		       "    for (i = 0; i < %d; i += %d) {\n", full, SUMS);
+	for (int k = 0; k < SUMS && full; k++)
 		say(e, "        %c += row[%s] * x[%s];\n", 'a' + k, k ? format("i + %d", k) : "i",
 		    k ? format("i + %d", k) : "i");
-	if (whole)
+	if (full)
 		say(e, "    }\n");
-	for (int k = whole; k < states; k++)
-		say(e, "    %c += row[%d] * x[%d];\n", 'a' + k - whole, k, k);
+	for (int k = full; k < states; k++)
+		say(e, "    %c += row[%d] * x[%d];\n", 'a' + k - full, k, k);
 	say(e, "    return ((a + e) + (b + f)) + ((c + g) + (d + h));\n");
 	close_function(e, "");
 }

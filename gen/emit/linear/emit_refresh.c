@@ -47,7 +47,7 @@ static int turn_place(const struct emitter *e, int load)
 {
 	int place = 0;
 	for (int l = 0; l < load; l++)
-		place += e->phasor[l] < 0 ? 0 : oscillates(e->system->load[l].wave) ? 2 : 1;
+		place += e->phasor[l] < 0 ? 0 : oscillates(e->system->load[l].forcing) ? 2 : 1;
 	return place;
 }
 
@@ -63,7 +63,7 @@ static void emit_turns(const struct emitter *e)
 			continue;
 		list = format("%s%s%s", list, *list ? "; " : "", column_text(&e->system->load[l], 0));
 		for (int k = 0; k < refresh->steps; k++)
-			for (int f = 0; f <= oscillates(e->system->load[l].wave); f++)
+			for (int f = 0; f <= oscillates(e->system->load[l].forcing); f++)
 				value[k * columns + place + f] = refresh->turn[2 * (l * refresh->steps + k) + f];
 	}
 	emit_array(e, format("How loads have rotated and grown so many steps after the refresh: e^{a t} cos(w t),\n"
@@ -167,7 +167,7 @@ static void emit_rotated_load(const struct emitter *e, int l)
 {
 	int turn = turn_place(e, l), at = e->phasor[l], number = l + 1;
 	emit_load_array(e, l);
-	if (oscillates(e->system->load[l].wave))
+	if (oscillates(e->system->load[l].forcing))
 		say(e, "    load%d[0] = turn[%d] * s->phasor[%d] - turn[%d] * s->phasor[%d];\n"
 		       "    load%d[1] = turn[%d] * s->phasor[%d] + turn[%d] * s->phasor[%d];\n",
 		    number, turn, at, turn + 1, at + 1, number, turn + 1, at, turn, at + 1);

@@ -50,7 +50,7 @@ void emit_keep_inputs(const struct emitter *e, int samples)
 
 static void emit_load_factors(const struct emitter *e)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	const int size[] = { e->system->segments, table->states, table->columns }, count = size[0] * size[1] * size[2];
 	double *value = ARRAY(double, (size_t)count);
 	for (int i = 0; i < count; i++)
@@ -84,7 +84,7 @@ void emit_take_back(const struct emitter *e)
 /* Of the columns of loads, then of inputs */
 static const char **acting_texts(const struct emitter *e)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
 	for (int k = 0; k < table->columns + table->inputs; k++) {
 		text[k] = k < table->columns ? column_operand(e, k) : input_operand(e, k - table->columns);
@@ -123,7 +123,7 @@ static void emit_rows_of_step(const struct emitter *e)
 		emit_refreshed_loads(e, loads_of_step(e));
 	if (tape_reads(t, TAPE_TABLE, -1, TABLE_FACTOR))
 		say(e, "    const double (*const factor)[%d] = $n_load_factor[s->segment];\n",
-		    e->step->branch->whole->columns);
+		    e->step->branch->full->columns);
 	emit_formulas(f, 4);
 }
 
@@ -159,7 +159,7 @@ void emit_step_end(const struct emitter *e)
 	if (e->step->refresh)
 		say(e, "    if (++s->since == %d) { $n_refresh_phasors(s); }\n",
 		    e->step->refresh->steps);
-	if (e->step->linear.rest && e->step->linear.rest->in_step)
+	if (e->step->linear.flush && e->step->linear.flush->in_step)
 		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
 	if (has_ranges(e))
 		say(e, "    $n_stay(s);\n");
@@ -177,7 +177,7 @@ const char *head_of_step(const struct emitter *e)
 }
 
 /* Into y: the state after a step in which the loads change their formula, from pass() */
-static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *whole)
+static void emit_interrupted_step(const struct emitter *e, const char *segment, const char *result, const char *full)
 {
 	const char *h = step_length(e), *u = given_inputs(e) ? "u, " : e->step->is.tuned ? "NULL, " : "";
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
@@ -187,7 +187,7 @@ static void emit_interrupted_step(const struct emitter *e, const char *segment, 
 	       "    } else {\n"
 	       "        $n_plain_step(s%s);\n"
 	       "    }\n",
-	    segment, e->system->segments - 1, segment, h, result, u, h, whole, given_inputs(e) ? ", u" : "");
+	    segment, e->system->segments - 1, segment, h, result, u, h, full, given_inputs(e) ? ", u" : "");
 	emit_step_end(e);
 }
 
@@ -238,7 +238,7 @@ static void emit_changing_step(const struct emitter *e)
 void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
-	if (e->step->linear.rest && e->step->linear.rest->in_step)
+	if (e->step->linear.flush && e->step->linear.flush->in_step)
 		say(e, "\nstatic void $n_rest($n *s);\n");
 	if (loads_change(e->system)) {
 		emit_changing_step(e);

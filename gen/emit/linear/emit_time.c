@@ -126,14 +126,14 @@ static void emit_remainder_now(const struct emitter *e)
 void emit_series_vector(const struct emitter *e, bool looped)
 {
 	const struct layout *layout = &e->step->layout;
-	const bool whole = e->step->forced && !loads_change(e->system) && !e->model->relative;
+	const bool full = e->step->forced && !loads_change(e->system) && !e->model->relative;
 	emit_load_states(e, wanted_loads(e, layout->load), false);
 	const int force_columns = layout->powers ? layout->powers * e->system->force_columns : 0;
 	if (looped || force_columns)
 		say(e, "    int i;\n");
 	if (!loads_change(e->system))
 		emit_remainder_now(e);
-	say(e, "    $n_%s(s, x);\n", whole ? "kept" : "kept_state");
+	say(e, "    $n_%s(s, x);\n", full ? "kept" : "kept_state");
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
@@ -156,7 +156,7 @@ void emit_vector_now(const struct emitter *e)
 /* Of the load states that the step leaves out: their places in rows of what they add, and in x; returns how many */
 static int emit_forced_places(const struct emitter *e)
 {
-	int *place = ARRAY(int, 2 * (size_t)e->step->branch->whole->columns), count = 0;
+	int *place = ARRAY(int, 2 * (size_t)e->step->branch->full->columns), count = 0;
 	for (int l = 0, column = 0; l < e->system->loads; column += e->system->load[l++].columns)
 		for (int j = 0; e->step->forced && e->step->forced->load[l] && j < e->system->load[l].columns; j++) {
 			place[2 * count] = column + j;
@@ -194,7 +194,7 @@ static void emit_passing_algorithm(const struct emitter *e)
 		   { "SEGMENTS", e->system->segments },
 		   { "DEGREE", e->step->series.degree }, { "HALVINGS", e->step->series.halvings },
 		   { "CHANGING", slopes.columns }, { "FIRST", slopes.first },
-		   { "FORCED", blocks ? 0 : emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->whole->columns },
+		   { "FORCED", blocks ? 0 : emit_forced_places(e) }, { "LOAD_STATES", e->step->branch->full->columns },
 		   { "LOSES", forced && forced->changes });
 	say(e, "#include \"changes.h\"\n");
 }
@@ -252,7 +252,7 @@ static bool adds_sustained(const struct emitter *e)
 /* By the load states in x */
 static void emit_sustained_then(const struct emitter *e)
 {
-	const char **text = ARRAY(const char *, (size_t)e->step->branch->whole->columns);
+	const char **text = ARRAY(const char *, (size_t)e->step->branch->full->columns);
 	int column = 0;
 	for (int l = 0; l < e->system->loads; l++)
 		for (int j = 0; j < e->system->load[l].columns; j++)
@@ -299,14 +299,14 @@ void emit_at_by(const struct emitter *e, const char *function)
 static void emit_passing_at(const struct emitter *e)
 {
 	const char *which = e->step->branches > 1 ? "which, " : "", *u = given_inputs(e) ? "u, " : "";
-	const char *left = e->step->layout.powers == 1 ? "left, " : "", *whole = e->step->forced ? "1, " : "";
+	const char *left = e->step->layout.powers == 1 ? "left, " : "", *full = e->step->forced ? "1, " : "";
 	bool relative = e->model->relative != NULL;
 	emit_remainder_now(e);
 	if (relative)
 		say(e, "    double x[$N_STATES];\n");
 	if (e->step->forced)            /* of what is kept and its forced part $n_get takes what rounding loses too */
 		emit_at_start(e);
-	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, left, whole, relative ? "x" : "y");
+	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, left, full, relative ? "x" : "y");
 	if (relative)
 		say(e, "    $n_written(s, x, y);\n");
 }
@@ -422,7 +422,7 @@ static void emit_second_words(const struct emitter *e)
 	int n = e->system->states;
 	double *low = ARRAY(double, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++)
-		low[i] = e->step->branch->whole->Phi[i].low;
+		low[i] = e->step->branch->full->Phi[i].low;
 	emit_array(e, format("Low parts of the transfer matrix: %s has the high parts",
 		   stepped_table(e, "Phi")), "Phi_low", 2,
 		   (const int[]){ n, n }, low, e->model->names.state);

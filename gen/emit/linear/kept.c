@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of what may move as a whole: states as written, and as they are kept. */
+/* Models with rigid-body modes: states as written, and as they are kept. */
 #include "emit/declarations.h"
 #include "model/linear/relative.h"
 
 /* The rate of a coordinate, over written values y; or what was gained of it, y being gains */
-static const char *rate_text(const struct emitter *e, const struct form *rate, bool whole)
+static const char *rate_text(const struct emitter *e, const struct form *rate, bool full)
 {
 	struct summands s = { 0 };
 	for (int i = 0; i < rate->terms; i++) {
 		const struct basis *basis = &rate->term[i].basis;
 		const char *operand = basis->kind == BASIS_COORD ? format("y[%d]", basis->index) : NULL;
-		if (operand || whole)
+		if (operand || full)
 			add_summand(&s, scaled(finite_number(e, rate->term[i].factor), operand));
 	}
 	return s.terms > 1 || *sum_of(&s, 12) == '-' ? format("(%s)", sum_of(&s, 12)) : sum_of(&s, 12);
@@ -108,7 +108,7 @@ void emit_conversions(const struct emitter *e)
 	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
 	find_places(e, 0, at, kept);
 	find_places(e, 1, at + coords, kept + coords);
-	say(e, "\n/* What may move as a whole is kept apart from what moves in it: x, from the states y as written */\n"
+	say(e, "\n/* x: rigid-body and relative coordinates, from the states y as written */\n"
 	       "static void $n_keep(const double y[$N_STATES], double x[$N_STATES])\n"
 	       "{\n");
 	for (int order = 0; order < 2; order++)

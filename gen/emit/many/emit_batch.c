@@ -20,11 +20,11 @@ static int members_of(const struct emitter *e, struct member member[6])
 	bool compensated = e->step->program->compensated;
 	member[count++] = (struct member){ "y", states };
 	if (compensated)
-		member[count++] = (struct member){ "rest", states };
+		member[count++] = (struct member){ "low", states };
 	if (e->step->carried.count)
 		member[count++] = (struct member){ "carry", e->step->carried.count };
 	if (e->step->forced && !compensated && !e->model->relative)
-		member[count++] = (struct member){ "rest", states };
+		member[count++] = (struct member){ "low", states };
 	if (e->model->relative) {
 		member[count++] = (struct member){ "set", states };
 		member[count++] = (struct member){ "from", states };

@@ -1,20 +1,21 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Regions: what the few crossings of a step are found by, in the runtime (few.h, which the model's file includes): the
- * expressions, their bounds, x over the whole step and over a part of it. */
+ * switching functions, their bounds, x over the whole step and over a part of it. */
 #include "inner.h"
 #include "emit/text.h"
 
 #include <string.h>
 
-/* ---- expressions, bounds ---- */
+/* ---- switching functions, bounds ---- */
 
-static void emit_expression(const struct emitter *e, const struct pieces *p)
+static void emit_switching_function(const struct emitter *e, const struct pieces *p)
 {
-	int size = e->step->layout.size, n = expressions_of(e);
-	open_function(e, "Event function i", "static double $o_expression(int i, const double x[%d])", size);
+	int size = e->step->layout.size, n = functions_of(e);
+	open_function(e, "switching function i", "static double $o_switching_function(int i, const double x[%d])",
+		      size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"
-		       "    return %s;\n", expression_text(e, p, 0, places(e, "x[%d]"), 11));
+		       "    return %s;\n", text_of_switching(e, p, 0, places(e, "x[%d]"), 11));
 	} else {
 		struct region_tables rows = { spell(e, "$o_row"), n, size, 0, 0, NULL, NULL };
 		struct summands s = { 0 };
@@ -51,7 +52,7 @@ static void emit_product(const struct emitter *e, const char *name, const char *
 static void emit_products(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size;
-	struct region_tables slopes = tables_of_regions(e, p, "", expressions_of(e), OF_PIECE(turn));
+	struct region_tables slopes = tables_of_regions(e, p, "", functions_of(e), OF_PIECE(turn));
 	bool *reads = ARRAY(bool, (size_t)size), *all = ARRAY(bool, (size_t)size), bounded = false;
 	const char **most = places(e, "pl_magnitude(x[%d])");
 	for (int j = 0; j < size; j++) {
@@ -73,9 +74,9 @@ static void emit_products(const struct emitter *e, const struct pieces *p)
 /* off[i], from x */
 static void emit_bounds(const struct emitter *e, const struct pieces *p)
 {
-	int n = expressions_of(e), size = e->step->layout.size;
+	int n = functions_of(e), size = e->step->layout.size;
 	const char **magnitude = entries(e, "pl_magnitude(x[%d])");
-	open_function(e, "How far each event function leaves its chord over h, at most",
+	open_function(e, "How far each switching function leaves its chord over h, at most",
 		      "static void $o_bounds(int which, const double x[%d], double off[%d])", size, n);
 	for (int i = 0; i < n; i++)
 		say(e, "    off[%d] = %s;\n", i,
@@ -87,10 +88,10 @@ static void emit_bounds(const struct emitter *e, const struct pieces *p)
 /* ---- x(s) ---- */
 
 /* Into end[]: Phi x over h */
-static void emit_whole(const struct emitter *e, const struct pieces *p)
+static void emit_full(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size;
-	struct region_tables whole = steps_of_regions(e, p, "factor");
+	struct region_tables full = steps_of_regions(e, p, "factor");
 	const char **x = entries(e, "x[%d]");
 	open_function(e, "end = e^{A h} x",
 		      "static void $o_advance(int which, const double x[%d], double end[%d])", size,
@@ -98,10 +99,10 @@ static void emit_whole(const struct emitter *e, const struct pieces *p)
 	say(e, "    const double (*const factor)[%d] = $o_pieces[which];\n", size);
 	for (int i = 0; i < size; i++)
 		if (is_compensated(e))
-			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&whole, i, x, NULL, 21));
+			say(e, "    end[%d] = x[%d] + (%s);\n", i, i, row_text(&full, i, x, NULL, 21));
 		else
-			say(e, "    end[%d] = %s;\n", i, row_text(&whole, i, x, NULL, 13));
-	close_function(e, is_table(&whole) && !is_compensated(e) ? "" : "factor");
+			say(e, "    end[%d] = %s;\n", i, row_text(&full, i, x, NULL, 13));
+	close_function(e, is_table(&full) && !is_compensated(e) ? "" : "factor");
 }
 
 static bool moves(const struct region_tables *t, int row)
@@ -211,11 +212,11 @@ static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 {
 	const char *step = any_pieces(e) ? "step_" : "";
-	say_macro(e, "FEW", whole_text(MOST_FAST_PATH));
-	say_macro(e, "EVENT_CHECKS", whole_text(MOST_EVENT_CHECKS));
+	say_macro(e, "FEW", integer_text(MOST_FAST_PATH));
+	say_macro(e, "EVENT_CHECKS", integer_text(MOST_EVENT_CHECKS));
 	say_macro(e, "LARGE", shortest(p->large));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
-	say_macro(e, "MOVES", whole_text(e->step->regions.event_check.degree));
+	say_macro(e, "MOVES", integer_text(e->step->regions.event_check.degree));
 	say_macro(e, "TANGENT", format("PL(%stangent)", step));
 	say_macro(e, "CUBIC_ERROR", format("PL(%scubic_error)", step));
 }
@@ -223,10 +224,10 @@ void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 void emit_crossing(const struct emitter *e, const struct pieces *p)
 {
 	struct region_tables turns = tables_of_regions(e, p, "", e->step->layout.size, OF_PIECE(turns));
-	emit_expression(e, p);
+	emit_switching_function(e, p);
 	emit_products(e, p);
 	emit_bounds(e, p);
-	emit_whole(e, p);
+	emit_full(e, p);
 	emit_turn(e, &turns);
 	if (strcmp(e->degree, e->own) == 0)     /* else they are there already */
 		emit_weights(e, p);

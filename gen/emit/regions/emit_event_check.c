@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Regions: a step that stays clear of every breakpoint, as sums with a bound for each expression. */
+/* Regions: a step that stays clear of every breakpoint, as sums with a bound for each switching function. */
 #include "inner.h"
 #include "emit/steps.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "step/tunable/tuned.h"
 
@@ -34,7 +34,7 @@ const char **operands_of_x(const struct emitter *e)
 struct check {
 	bool own;                   /* tables of an instance; what stays of x is gathered */
 	int branch;                 /* of one region; -1: `which` */
-	struct region_tables whole, row, off;
+	struct region_tables full, row, off;
 	const char **x, **end, **size; /* of each entry of x: now, at the end; for bounds its size; NULL: gathered */
 };
 
@@ -62,7 +62,7 @@ static const char **magnitudes(const struct emitter *e, const char *const *x)
 static struct region_tables rows_of_pieces(const struct emitter *e, const struct pieces *p)
 {
 	struct region_tables rows = {
-		"c->row", expressions_of(e), e->step->layout.size, 0, 1, ARRAY(double *, 1), NULL
+		"c->row", functions_of(e), e->step->layout.size, 0, 1, ARRAY(double *, 1), NULL
 	};
 	rows.value[0] = p->row;
 	return rows;
@@ -82,14 +82,14 @@ static bool changes(const struct emitter *e, int branch)
 static void mark_own(const struct emitter *e, const struct pieces *p, struct check *l)
 {
 	const struct tuning *r = e->model->params.retuned;
-	int size = e->step->layout.size, n = expressions_of(e);
+	int size = e->step->layout.size, n = functions_of(e);
 	const bool *reached = reached_elsewhere(e->step, l->branch), systems = changes(e, l->branch);
-	bool *whole = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),
+	bool *full = ARRAY(bool, (size_t)(size * size)), *row = ARRAY(bool, (size_t)(n * size)),
 	     *off = ARRAY(bool, (size_t)(n * size));
 	for (int i = 0; i < e->system->states * size && systems; i++)
-		whole[i] = reached[i] || i % (size + 1) == 0;
+		full[i] = reached[i] || i % (size + 1) == 0;
 	for (int i = 0; i < n; i++) {
-		int place = retuned_place(r, RETUNED_EXPRESSION, 0, i);
+		int place = retuned_place(r, RETUNED_FUNCTION, 0, i);
 		for (int k = 0; k < size; k++) {
 			int at = i * size + k;
 			row[at] = place >= 0 && r->acts[place * size + k];
@@ -97,7 +97,7 @@ static void mark_own(const struct emitter *e, const struct pieces *p, struct che
 				off[i * size + j] = off[i * size + j] || reached[k * size + j];
 		}
 	}
-	l->whole.own = whole;
+	l->full.own = full;
 	l->row.own = row;
 	l->off.own = off;
 	for (int j = 0; j < size; j++)
@@ -110,11 +110,11 @@ static struct check check_of(const struct emitter *e, const struct pieces *p, co
 	struct check l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
 			  .end = moving(e, entries(e, "end%d")) };
 	l.size = magnitudes(e, l.x);
-	l.whole = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
+	l.full = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
 	l.off = tables_of_regions(e, p, own && branch >= 0 ? format("c->chord_off[%d]", branch) : "c->chord_off[which]",
-				  expressions_of(e), OF_PIECE(off));
+				  functions_of(e), OF_PIECE(off));
 	if (branch >= 0) {
-		l.whole = of_branch(l.whole, branch);
+		l.full = of_branch(l.full, branch);
 		l.off = of_branch(l.off, branch);
 	}
 	if (own)
@@ -127,7 +127,7 @@ static const char *end_text(const struct emitter *e, const struct check *l, int 
 	const char *added = NULL;
 	if (l->own && any_stays(e->step) && i < e->system->states)
 		added = l->branch < 0 ? format("c->added[which][%d]", i) : format("c->added[%d][%d]", l->branch, i);
-	return row_text(&l->whole, i, l->x, added, 22);
+	return row_text(&l->full, i, l->x, added, 22);
 }
 
 static const char *bound_text(const struct emitter *e, const struct pieces *p, const struct check *l, int i, int indent)
@@ -140,27 +140,27 @@ static const char *bound_text(const struct emitter *e, const struct pieces *p, c
 	return row_text(&l->off, i, l->size, still, indent);
 }
 
-/* Of an instance, gathered, expressions may be one and the same: the first of them */
-static int leader(const struct check *l, int expression)
+/* Of an instance, gathered, switching functions may be one and the same: the first of them */
+static int leader(const struct check *l, int function)
 {
 	const struct region_tables *t = &l->row;
 	int i = 0;
-	for (; i < expression && l->own; i++) {
-		const double *a = t->value[0] + i * t->columns, *b = t->value[0] + expression * t->columns;
+	for (; i < function && l->own; i++) {
+		const double *a = t->value[0] + i * t->columns, *b = t->value[0] + function * t->columns;
 		bool same = true;
 		for (int j = 0; j < t->columns && same; j++)
-			same = !t->own[i * t->columns + j] && !t->own[expression * t->columns + j] &&
+			same = !t->own[i * t->columns + j] && !t->own[function * t->columns + j] &&
 			       (!l->x[j] || a[j] == b[j]);
 		if (same)
 			return i;
 	}
-	return expression;
+	return function;
 }
 
 static bool is_read_at_end(const struct emitter *e, const struct check *l, int entry)
 {
 	bool read = false;
-	for (int i = 0; i < expressions_of(e); i++)
+	for (int i = 0; i < functions_of(e); i++)
 		read = read || acts_at(&l->row, i, entry);
 	return read && l->x[entry];
 }
@@ -168,33 +168,33 @@ static bool is_read_at_end(const struct emitter *e, const struct check *l, int e
 /* ---- by tables of all regions, or region by region ---- */
 
 /* What a row's second words add, and its first ones of what rounding has taken */
-static const char *small_text(const struct emitter *e, const struct region_tables *whole, int row,
+static const char *small_text(const struct emitter *e, const struct region_tables *full, int row,
 			      const char *const *x, int indent)
 {
-	const char **rest = ARRAY(const char *, (size_t)whole->columns);
+	const char **rest = ARRAY(const char *, (size_t)full->columns);
 	for (int i = 0; i < e->system->states; i++)
-		rest[i] = format("s->rest[%d]", place_of_state(e, i));
-	const char *of_rest = row_text(whole, row, rest, NULL, indent + 1), *further = NULL;
+		rest[i] = format("s->low[%d]", place_of_state(e, i));
+	const char *of_rest = row_text(full, row, rest, NULL, indent + 1), *further = NULL;
 	if (strcmp(of_rest, "0.0") != 0)
 		further = format("(%s)", of_rest);
-	return row_text(whole, e->step->layout.size + row, x, further, indent);
+	return row_text(full, e->step->layout.size + row, x, further, indent);
 }
 
 static void emit_end(const struct emitter *e, const struct check *l, int row, const char *before, const char *name)
 {
 	int indent = 24 + (int)strlen(before);
-	const struct region_tables *whole = &l->whole;
+	const struct region_tables *full = &l->full;
 	const char **x = l->x;
 	if (!is_compensated(e))
 		say(e, "    %send%d = %s;  /* %s */\n", before, row, end_text(e, l, row), name);
 	else if (row >= e->system->states)
 		say(e, "    %send%d = %s + (%s);  /* %s */\n", before, row, *x[row] ? x[row] : "1.0",
-		    row_text(whole, row, x, NULL, indent), name);
+		    row_text(full, row, x, NULL, indent), name);
 	else
 		say(e, "    %send%d = pl_accumulate(%s,  /* %s */\n"
 		       "%*s%s,\n"
-		       "%*s%s, &rest%d);\n", before, row, x[row], name, indent, "",
-		    row_text(whole, row, x, NULL, indent), indent, "", small_text(e, whole, row, x, indent), row);
+		       "%*s%s, &low%d);\n", before, row, x[row], name, indent, "",
+		    row_text(full, row, x, NULL, indent), indent, "", small_text(e, full, row, x, indent), row);
 }
 
 static void emit_ends(const struct emitter *e, const struct check *l, const char *before)
@@ -210,7 +210,7 @@ static void emit_within(const struct emitter *e, const struct check *l)
 {
 	const struct switching *s = e->model->switching;
 	say(e, "    if (");
-	for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks + 2) {
+	for (int i = 0, first = 0; i < s->functions; first += s->function[i++].breaks + 2) {
 		int k = leader(l, i);
 		const char *low = l->own ? format("c->edge[%d + span[%d]]", first, i)
 					 : spell(e, "$o_within[s->contact$p.region][%d][0]", i);
@@ -231,7 +231,7 @@ static void emit_table_step(const struct emitter *e, const struct pieces *p, con
 	say(e, "    const double (*const factor)[%d] = %s[which];\n", e->step->layout.size,
 	    l.own ? "c->pieces" : spell(e, "$o_pieces"));
 	emit_ends(e, &l, "const double ");
-	for (int i = 0; i < expressions_of(e); i++) {
+	for (int i = 0; i < functions_of(e); i++) {
 		if (leader(&l, i) != i)
 			continue;
 		say(e, "    const double from%d = %s;\n", i, row_text(&l.row, i, l.x, NULL, 24));
@@ -241,28 +241,28 @@ static void emit_table_step(const struct emitter *e, const struct pieces *p, con
 	emit_within(e, &l);
 }
 
-/* Of an expression at the start and at the end: the state itself, or a local */
-static const char *short_text(const char *text, const char *local, int expression)
+/* Of a switching function at the start and at the end: the state itself, or a local */
+static const char *short_text(const char *text, const char *local, int function)
 {
-	return strchr(text, ' ') ? format("%s%d", local, expression) : text;
+	return strchr(text, ' ') ? format("%s%d", local, function) : text;
 }
 
 /* An end of an interval, with what comes before it in the condition: beyond it is `than` */
-static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int expression, bool upper,
+static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int function, bool upper,
 		      const char *than)
 {
 	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                ", from,
-	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', expression, upper ? '<' : '>', than);
+	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', function, upper ? '<' : '>', than);
 }
 
-/* Whether all expressions keep inside their intervals */
+/* Whether all switching functions keep inside their intervals */
 static void emit_inside(const struct emitter *e, const struct pieces *p, const struct check *l, int region)
 {
 	const struct switching *s = e->model->switching;
 	bool first = true;
 	say(e, "        clear = ");
-	for (int i = 0, edge = 0; i < s->expressions; edge += s->expression[i++].breaks + 2) {
-		int k = leader(l, i), interval = interval_of(s, region, i), at = region * s->expressions + i;
+	for (int i = 0, edge = 0; i < s->functions; edge += s->function[i++].breaks + 2) {
+		int k = leader(l, i), interval = interval_of(s, region, i), at = region * s->functions + i;
 		const char *from = short_text(row_text(&l->row, k, l->x, NULL, 0), "from", k),
 			   *to = short_text(row_text(&l->row, k, l->end, NULL, 0), "to", k);
 		if (interval > 0) {
@@ -270,7 +270,7 @@ static void emit_inside(const struct emitter *e, const struct pieces *p, const s
 				  l->own ? format("c->edge[%d]", edge + interval) : shortest(p->low[at]));
 			first = false;
 		}
-		if (interval < s->expression[i].breaks) {
+		if (interval < s->function[i].breaks) {
 			emit_side(e, first, from, to, k, true,
 				  l->own ? format("c->edge[%d]", edge + interval + 1) : shortest(p->high[at]));
 			first = false;
@@ -285,7 +285,7 @@ static void emit_region_case(const struct emitter *e, const struct pieces *p, co
 	const struct check l = check_of(e, p, x, e->model->switching->region[region].system);
 	say(e, "    case %d:\n", region);
 	emit_ends(e, &l, "    ");
-	for (int i = 0; i < expressions_of(e); i++) {
+	for (int i = 0; i < functions_of(e); i++) {
 		const char *from = row_text(&l.row, i, l.x, NULL, 15), *to = row_text(&l.row, i, l.end, NULL, 15);
 		if (leader(&l, i) != i)
 			continue;
@@ -313,7 +313,7 @@ static void emit_case_end(const struct emitter *e)
 	       "    if (clear && ");
 }
 
-/* ends, and how far expressions may be off their chords: in each region its own numbers */
+/* ends, and how far switching functions may be off their chords: in each region its own numbers */
 static void emit_cases(const struct emitter *e, const struct pieces *p, const char *const *x)
 {
 	const struct switching *s = e->model->switching;
@@ -322,7 +322,7 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	for (int i = 0; i < e->step->layout.size; i++)
 		if (i < e->system->states || is_read_at_end(e, &l, i))
 			list = format("%s%send%d = 0.0", list, *list ? ", " : "", i);
-	for (int i = 0; i < s->expressions; i++) {
+	for (int i = 0; i < s->functions; i++) {
 		if (leader(&l, i) != i)
 			continue;
 		list = format("%s, off%d", list, i);
@@ -350,7 +350,7 @@ void emit_event_check(const struct emitter *e)
 			    spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
 	}
 	for (int i = 0; i < e->system->states && is_compensated(e); i++)
-		say(e, "    double rest%d = s->rest[%d];\n", i, place_of_state(e, i));
+		say(e, "    double low%d = s->low[%d];\n", i, place_of_state(e, i));
 	if (e->model->params.retuned)
 		say(e, "    const $n_coeffs *const c = &s->coeffs;\n");
 	if (is_checked_by_tables(e->step))
@@ -364,7 +364,7 @@ void emit_event_check(const struct emitter *e)
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
 	for (int i = 0; i < e->system->states && is_compensated(e); i++)
-		say(e, "        s->rest[%d] = rest%d;\n", place_of_state(e, i), i);
+		say(e, "        s->low[%d] = low%d;\n", place_of_state(e, i), i);
 	say(e, "        s->contact$p.crossings = 0;\n"
 	       "    } else {\n"
 	       "        double now[%d];\n", size_of_vector(e));
@@ -372,7 +372,7 @@ void emit_event_check(const struct emitter *e)
 		say(e, "        now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
 	for (int j = 0; j < layout->size && is_compensated(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
-		    j < e->system->states ? format("s->rest[%d]", place_of_state(e, j)) : "0.0");
+		    j < e->system->states ? format("s->low[%d]", place_of_state(e, j)) : "0.0");
 	say(e, e->step->regions.event_check.fast_path ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
 				"    }\n"
 			      : "        $o_seek(s, now);\n"

@@ -13,11 +13,11 @@ static void emit_guard_list(const struct emitter *e, const struct guards *g)
 		     "First guard of each region in the list below",
 		     e->model->switching->regions + 1, g->first);
 	say(e, "\n"
-	       "/* Guards, whose events end a region: number of the guard function; event function, breakpoint and\n"
-	       " * direction of its crossing; number of the next region less this; impact that begins, or -1 */\n"
+	       "/* Guards, whose events end a region: number of the guard function; switching function, breakpoint\n"
+	       " * and direction of its crossing; number of the next region less this; impact that begins, or -1 */\n"
 	       "static const pl_guard $o_guard[%d] = {\n", g->guards);
 	for (int i = 0; i < g->guards; i++)
-		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].expression,
+		say(e, "    { %d, %d, %d, %d, %d, %d },\n", g->guard[i].row, g->guard[i].function,
 		    g->guard[i].breakpoint, g->guard[i].upward, g->guard[i].leads, g->guard[i].impact);
 	say(e, "};\n");
 }
@@ -32,23 +32,23 @@ static void emit_limits(const struct emitter *e, const struct guards *g)
 		     "Limit of each guard: its event is where the guard function rises to it",
 		     g->guards, limit);
 	put_numbers(e, "amplitude",
-		     format("Amplitude of cos and sin of loads in each event function%s, which bounds its rounding",
+		     format("Amplitude of cos and sin of loads in each switching function%s, which bounds its rounding",
 			    regions_change(e) ? ", segment of time by segment" : ""),
-		     s->segments * s->expressions, g->amplitude);
+		     s->segments * s->functions, g->amplitude);
 	put_numbers(e, "guard_amplitude", "Amplitude of cos and sin of loads in each guard function", g->rows,
 		    g->row_amplitude);
 }
 
-/* Of each row: an expression, or what it takes to hold one */
+/* Of each row: a switching function, or what it takes to hold one */
 static const char **guard_notes(const struct emitter *e, const struct guards *g)
 {
 	const struct switching *s = e->model->switching;
 	const char **note = ARRAY(const char *, (size_t)g->rows);
 	for (int r = 0; r < s->regions; r++)
 		for (int i = g->first[r]; i < g->first[r + 1]; i++) {
-			int expression = g->guard[i].expression;
-			const char *name = form_text(e->step->shown->model, s->expression[expression].form);
-			bool held = is_stick(&s->expression[expression], interval_of(s, r, expression));
+			int function = g->guard[i].function;
+			const char *name = form_text(e->step->shown->model, s->function[function].form);
+			bool held = is_stick(&s->function[function], interval_of(s, r, function));
 			note[g->guard[i].row] =
 				format("system %d: %s%s", g->branch[g->guard[i].row],
 				       held                   ? g->guard[i].upward ? "holding force - limit, up: "
@@ -64,7 +64,8 @@ static void emit_guard_rows(const struct emitter *e, const struct guards *g)
 {
 	const char **note = guard_notes(e, g);
 	const struct { const char *name, *note; const double *value; } all[] = {
-		{ "guard_row", "Guard functions g = guard_row . x: while a contact slips its event function, while it "
+		{ "guard_row",
+		 "Guard functions g = guard_row . x: while a contact slips its switching function, while it "
 			  "sticks or rests the holding force less its limit", g->row },
 		{ "guard_tangent", "Slope of each guard function along the solution: this row times x is d/3 g', "
 			       "d = h/2^halvings", g->slope },
@@ -116,12 +117,12 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 	const char **note = ARRAY(const char *, (size_t)count);
 	note[0] = "none";
 	open_table(e, "pl_impact", "impact", format("[%d]", count),
-		   "Impacts: event function, breakpoint and direction; interval in which its contact rests; "
+		   "Impacts: switching function, breakpoint and direction; interval in which its contact rests; "
 		   "assignments of its jump, and of that without restitution; restitution; amplitude of loads in its "
 		   "speed");
 	for (int i = 0; i < all; i++) {
 		const struct impact_row *impact = &g->impact[i];
-		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->expression, impact->breakpoint,
+		say(e, "    { %d, %d, %d, %d, %d, %d, %s, %s },\n", impact->function, impact->breakpoint,
 		    impact->upward, impact->rest, impact->jump, impact->still, shortest(impact->restitution),
 		    shortest(impact->amplitude));
 		note[i] = impact->rest < 0 ? "none"

@@ -82,18 +82,18 @@ static void emit_rungs(const struct emitter *e, const struct pieces *pieces)
 
 static int rows_of_reach(const struct emitter *e, const struct guards *g)
 {
-	return g ? g->reaches : rungs_of_all(e) * e->model->switching->expressions;
+	return g ? g->reaches : rungs_of_all(e) * e->model->switching->functions;
 }
 
-/* Of expressions: of each matrix as many rows for each as it has rungs, and the rest of its room behind them */
+/* Of switching functions: of each matrix as many rows for each as it has rungs, and the rest of its room behind them */
 static double *reach_of_all(const struct emitter *e, const struct pieces *pieces)
 {
-	int size = e->step->layout.size, expressions = e->model->switching->expressions, at = 0;
-	double *reach = ARRAY(double, (size_t)(rungs_of_all(e) * expressions * size));
+	int size = e->step->layout.size, functions = e->model->switching->functions, at = 0;
+	double *reach = ARRAY(double, (size_t)(rungs_of_all(e) * functions * size));
 	for (int k = 0; k < e->step->branches; k++) {
-		for (int i = 0; i < e->step->branch[k].rungs * expressions * size; i++)
+		for (int i = 0; i < e->step->branch[k].rungs * functions * size; i++)
 			reach[at + i] = pieces->piece[k].reach[i];
-		at += room_of(e, k) * expressions * size;
+		at += room_of(e, k) * functions * size;
 	}
 	return reach;
 }

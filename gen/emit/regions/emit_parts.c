@@ -14,7 +14,7 @@ static const struct switching *regions_of(const struct emitter *part)
 
 static bool is_linear_step(const struct step *part)
 {
-	return part->model->switching->expressions == 0;
+	return part->model->switching->functions == 0;
 }
 
 static bool is_linear_part(const struct emitter *part)
@@ -50,7 +50,7 @@ static struct emitter part_of(const struct emitter *e, int index)
 }
 
 /* The linear part, the last, has none. */
-static int divided_parts(const struct emitter *e)
+static int switched_parts(const struct emitter *e)
 {
 	int parts = e->step->regions.parts;
 	return parts - is_linear_step(e->step->regions.part[parts - 1]);
@@ -72,16 +72,16 @@ void emit_event_note_of_parts(const struct emitter *e)
 /* ---- tables ---- */
 
 /* What each region of the part adds to the number of the model's */
-static void emit_shares(const struct emitter *part, const struct switching *whole)
+static void emit_shares(const struct emitter *part, const struct switching *full)
 {
 	const struct switching *s = regions_of(part);
 	int *share = ARRAY(int, (size_t)s->regions);
 	for (int r = 0; r < s->regions; r++)
-		share[r] = share_of_region(part->part, whole, r);
+		share[r] = share_of_region(part->part, full, r);
 	put_wholes(part, false, "share",
 		     "What each region of the part adds to the number of the model's region", s->regions, share);
 	put_wholes(part, false, "number",
-		     "Numbers of its event functions among the model's", s->expressions, part->part->expression);
+		     "Numbers of its switching functions among the model's", s->functions, part->part->function);
 }
 
 /* Of a state in two words each matrix has second ones behind the first */
@@ -97,7 +97,7 @@ static const char *note_of_slopes(const struct emitter *part)
 				: "A of the linear system, x' = A x; x = states, load states, inputs";
 }
 
-/* Regions without expressions, one in each segment of time: what the search has of those is not read. */
+/* Regions without switching functions, one in each segment of time: what the search has of those is not read. */
 static void emit_linear_tables(const struct emitter *part)
 {
 	const struct switching *s = regions_of(part);
@@ -160,7 +160,7 @@ static const char *loads_text(const struct emitter *part, bool as_parameters)
 	const char *text = "";
 	for (int l = 0; l < part->system->loads; l++) {
 		const struct load *load = &part->system->load[l];
-		bool polynomial = is_polynomial(load->wave);
+		bool polynomial = is_polynomial(load->forcing);
 		if (part->step->layout.load[l] < 0)
 			continue;
 		if (polynomial && load->powers > 1)
@@ -183,7 +183,7 @@ static const char *given_text(const struct emitter *part, bool as_parameters)
 static bool *needed_loads(const struct emitter *e, bool linear_too)
 {
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
-	for (int p = 0; p < (linear_too ? e->step->regions.parts : divided_parts(e)); p++)
+	for (int p = 0; p < (linear_too ? e->step->regions.parts : switched_parts(e)); p++)
 		for (int l = 0; l < e->system->loads; l++)
 			needed[l] = needed[l] || e->step->regions.part[p]->layout.load[l] >= 0;
 	return needed;
@@ -195,7 +195,7 @@ void emit_part_members(const struct emitter *e)
 {
 	say(e, "    pl_contact contact[%d];   /* of each part: region, crossings */\n"
 	       "    pl_crossing crossing[%d][%d];  /* of each, in the last step */\n",
-	    divided_parts(e), divided_parts(e), MAX_EVENTS);
+	    switched_parts(e), switched_parts(e), MAX_EVENTS);
 }
 
 static void emit_place_of_part(const struct emitter *part)
@@ -214,10 +214,10 @@ static void emit_place_call(const struct emitter *part)
 
 void emit_part_start(const struct emitter *e)
 {
-	for_parts(e, divided_parts(e), emit_place_of_part);
+	for_parts(e, switched_parts(e), emit_place_of_part);
 	open_function(e, "The regions of a state", "static void $n_place($n *s)");
 	emit_rotated_loads(e, needed_loads(e, false), false);
-	for_parts(e, divided_parts(e), emit_place_call);
+	for_parts(e, switched_parts(e), emit_place_call);
 	close_function(e, "");
 }
 
@@ -226,7 +226,7 @@ void emit_part_start(const struct emitter *e)
 static void emit_list_of_parts(const struct emitter *e, const char *name, const char *table)
 {
 	const char *list = "";
-	for (int p = 0; p < divided_parts(e); p++)
+	for (int p = 0; p < switched_parts(e); p++)
 		list = format("%s%s%s_part%d_%s", list, p == 0 ? "" : p % 4 ? ", " : ",\n    ", e->name, p, table);
 	say(e, "static const int *const $n_%s[] = {\n    %s\n};\n", name, list);
 }
@@ -237,7 +237,7 @@ static void emit_questions(const struct emitter *e)
 	emit_list_of_parts(e, "shares", "share");
 	emit_list_of_parts(e, "numbers", "number");
 	begin_macros(e, "parts.h", e->name);
-	say_macro(e, "PARTS", whole_text(divided_parts(e)));
+	say_macro(e, "PARTS", integer_text(switched_parts(e)));
 	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
 	say_include(e, "parts.h");
 }
@@ -249,23 +249,23 @@ static void begin_step(const struct emitter *part)
 	open_function(part, NULL, "static void $o_step($n *s%s)", given_text(part, true));
 }
 
-static int acting_entries(const struct emitter *part, const double *whole)
+static int acting_entries(const struct emitter *part, const double *full)
 {
 	int size = part->step->layout.size, count = 0;
 	for (int i = 0; i < part->system->states * size; i++)
-		count += whole[i] != 0;
+		count += full[i] != 0;
 	return count;
 }
 
-static void emit_linear_loop(const struct emitter *part, const double *whole)
+static void emit_linear_loop(const struct emitter *part, const double *full)
 {
-	put_matrix(part, "whole", "Transfer matrix e^{A h}", size_of_vector(part), part->step->layout.size, whole,
+	put_matrix(part, "full", "Transfer matrix e^{A h}", size_of_vector(part), part->step->layout.size, full,
 		   names_of_rows(part));
 	begin_step(part);
 	say(part, "    double end[%d];\n", part->system->states);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
-	say(part, "    pl_multiply(%d, %d, $o_whole[0], x, end);\n"
+	say(part, "    pl_multiply(%d, %d, $o_full[0], x, end);\n"
 		  "    for (i = 0; i < %d; i++) { s->y[$o_state[i]] = end[i]; }\n", part->system->states,
 	    part->step->layout.size, part->system->states);
 }
@@ -276,7 +276,7 @@ static const char *given_names(const struct emitter *part)
 	const char *text = given_inputs(part) ? "u" : "";
 	for (int l = 0; l < part->system->loads; l++) {
 		const struct load *load = &part->system->load[l];
-		const bool polynomial = is_polynomial(load->wave);
+		const bool polynomial = is_polynomial(load->forcing);
 		if (part->step->layout.load[l] < 0)
 			continue;
 		if (polynomial && load->powers > 1)
@@ -287,7 +287,7 @@ static const char *given_names(const struct emitter *part)
 	return text + strspn(text, " ");
 }
 
-static void emit_linear_rows(const struct emitter *part, const double *whole)
+static void emit_linear_rows(const struct emitter *part, const double *full)
 {
 	int size = part->step->layout.size, states = part->system->states;
 	const char **x = operands_of_x(part);
@@ -300,8 +300,8 @@ static void emit_linear_rows(const struct emitter *part, const double *whole)
 	for (int i = 0; i < states; i++) {
 		struct summands s = { 0 };
 		for (int j = 0; j < size; j++)
-			if (whole[i * size + j] != 0)
-				add_summand(&s, scaled(whole[i * size + j], *x[j] ? x[j] : NULL));
+			if (full[i * size + j] != 0)
+				add_summand(&s, scaled(full[i * size + j], *x[j] ? x[j] : NULL));
 		say(part, "    s->y[%d] = %s;  /* %s */\n", place_of_state(part, i), sum_of(&s, 14),
 		    part->model->names.state[i]);
 	}
@@ -331,20 +331,20 @@ static void emit_linear_by_pieces(const struct emitter *part)
 static void emit_linear_step(const struct emitter *part)
 {
 	enum { TERMS = 400 };
-	const double *whole = whole_step_of(part->step, 0);
+	const double *full = full_step_of(part->step, 0);
 	struct summands size = { 0 };
 	if (regions_change(part) || is_compensated(part))
 		emit_linear_by_pieces(part);
 	else
-		(acting_entries(part, whole) > TERMS ? emit_linear_loop : emit_linear_rows)(part, whole);
+		(acting_entries(part, full) > TERMS ? emit_linear_loop : emit_linear_rows)(part, full);
 	for (int i = 0; i < part->system->states; i++)
 		add_summand(&size, format("pl_magnitude(s->y[%d])", place_of_state(part, i)));
 	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
-	    sum_of(&size, 10), shortest(part->model->asked.single ? 0x1p120 : 0x1p1000));
+	    sum_of(&size, 10), shortest(part->model->request.single ? 0x1p120 : 0x1p1000));
 	close_function(part, given_names(part));
 }
 
-static void emit_divided_step(const struct emitter *part)
+static void emit_switched_step(const struct emitter *part)
 {
 	begin_step(part);
 	if (part->step->regions.event_check.fast_path) {
@@ -360,7 +360,7 @@ static void emit_divided_step(const struct emitter *part)
 
 static void emit_step_of_part(const struct emitter *part)
 {
-	(is_linear_part(part) ? emit_linear_step : emit_divided_step)(part);
+	(is_linear_part(part) ? emit_linear_step : emit_switched_step)(part);
 }
 
 static void emit_step_call(const struct emitter *part)

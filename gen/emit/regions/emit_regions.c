@@ -19,13 +19,13 @@ static bool has_guards(const struct emitter *e)
 
 /* ---- tables: of the file, or where params are tunable of an instance ---- */
 
-static const char **expression_names(const struct emitter *e)
+static const char **function_names_of_regions(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e), *shown = e->step->shown->model->switching;
-	const char **name = ARRAY(const char *, (size_t)s->expressions);
-	for (int i = 0; i < s->expressions; i++)
+	const char **name = ARRAY(const char *, (size_t)s->functions);
+	for (int i = 0; i < s->functions; i++)
 		name[i] = form_text(e->step->shown->model,
-				    shown->expression[e->part ? e->part->expression[i] : i].form);
+				    shown->function[e->part ? e->part->function[i] : i].form);
 	return name;
 }
 
@@ -37,7 +37,7 @@ struct matrices {
 	size_t of;
 };
 
-#define EVENT_FUNCTIONS "Event functions, e = row . x; where one passes a breakpoint the equations change"
+#define EVENT_FUNCTIONS "switching functions, e = row . x; where one passes a breakpoint the equations change"
 
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
@@ -45,30 +45,30 @@ static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 	int size = e->step->layout.size;
 	if (regions_change(e))
 		put_matrices(e, "row", EVENT_FUNCTIONS ", in each segment of time", s->segments,
-			      s->expressions, size, pieces->rows, expression_names(e));
+			      s->functions, size, pieces->rows, function_names_of_regions(e));
 	else
-		put_matrix(e, "row", EVENT_FUNCTIONS, s->expressions, size, pieces->row,
-			    expression_names(e));
+		put_matrix(e, "row", EVENT_FUNCTIONS, s->functions, size, pieces->row,
+			    function_names_of_regions(e));
 }
 
 static int breaks_of(const struct emitter *e, int *breaks)
 {
 	const struct switching *s = regions_of(e);
 	int all = 0;
-	for (int i = 0; i < s->expressions; i++)
-		all += breaks[i] = s->expression[i].breaks;
+	for (int i = 0; i < s->functions; i++)
+		all += breaks[i] = s->function[i].breaks;
 	return all;
 }
 
 static void emit_breaks(const struct emitter *e, const struct pieces *pieces, bool own)
 {
-	int *breaks = ARRAY(int, (size_t)expressions_of(e)), all = breaks_of(e, breaks);
+	int *breaks = ARRAY(int, (size_t)functions_of(e)), all = breaks_of(e, breaks);
 	if (!own)
 		put_wholes(e, false, "breaks",
-			     "How many breakpoints each event function has", expressions_of(e), breaks);
+			     "How many breakpoints each switching function has", functions_of(e), breaks);
 	if (own || !e->model->params.retuned)
 		put_numbers(e, "breakpoint",
-			     "The breakpoints, in rising order, of one event function after the other",
+			     "The breakpoints, in rising order, of one switching function after the other",
 			     all, pieces->breakpoint);
 }
 
@@ -94,14 +94,14 @@ static void emit_region_numbers(const struct emitter *e)
 }
 
 /* By which a step sees over the whole of h that it stays clear */
-static void emit_own_check(const struct emitter *e, const struct pieces *pieces, const char **expression)
+static void emit_own_check(const struct emitter *e, const struct pieces *pieces, const char **function)
 {
-	int n = expressions_of(e);
+	int n = functions_of(e);
 	double *large = ARRAY(double, (size_t)e->step->branches);
 	for (int k = 0; k < e->step->branches; k++)
 		large[k] = pieces->large;
 	put_matrices(e, "chord_off", CHORD_NOTE,
-		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, OF_PIECE(off)), expression);
+		      e->step->branches, n, e->step->layout.size, of_branches(e, pieces, OF_PIECE(off)), function);
 	if (any_stays(e->step))
 		emit_of_branches(e, pieces, "added",
 			     "What the constant entries of x add to each state over h", e->system->states,
@@ -110,8 +110,8 @@ static void emit_own_check(const struct emitter *e, const struct pieces *pieces,
 		emit_of_branches(e, pieces, "still",
 			     "What these, and entries of x that are never above 1, add to chord_off", n,
 				 OF_PIECE(still));
-	put_numbers(e, "edge",
-		     "Breakpoints of each event function less what constant entries of x add to it, between open ends",
+	put_numbers(e, "edge", "Breakpoints of each switching function less what constant entries of x add to it, "
+		     "between open ends",
 		     edges_of_regions(regions_of(e)), pieces->edge);
 	put_numbers(e, "large", "Limit of |x|, below which no bound overflows", e->step->branches, large);
 }
@@ -119,8 +119,9 @@ static void emit_own_check(const struct emitter *e, const struct pieces *pieces,
 /* All that an instance has where params are tunable, in the order of its struct; else each a table */
 static void emit_numbers_of_regions(const struct emitter *e, const struct pieces *pieces, const struct guards *g)
 {
-	int size = e->step->layout.size, expressions = regions_of(e)->expressions;
-	const char **entry = layout_names(&e->step->layout, e->system, e->model), **expression = expression_names(e);
+	int size = e->step->layout.size, functions = regions_of(e)->functions;
+	const char **entry = layout_names(&e->step->layout, e->system, e->model),
+		**function = function_names_of_regions(e);
 	const bool rest = is_compensated(e);
 	const char *words = rest ? " in two words" : "";
 	if (rest)
@@ -131,12 +132,12 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		{ "pieces", format("Transfer matrix of each linear system over a step: e^{A h}%s%s",
 				   rest ? " - I" : "", words),
 		  size_of_vector(e), entry, rest ? OF_PIECE(gain) : OF_PIECE(Phi) },
-		{ "tangent", "Slope of each event function along the solution: this row times x is d/3 e', "
-			  "d = h/2^halvings", expressions, expression, OF_PIECE(slope) },
+		{ "tangent", "Slope of each switching function along the solution: this row times x is d/3 e', "
+			  "d = h/2^halvings", functions, function, OF_PIECE(slope) },
 		{ "chord_error", "Bound of its curvature: within d, e leaves its chord by at most d^2/8 |e''|, "
-			 "this row times |x|", expressions, expression, OF_PIECE(second) },
+			 "this row times |x|", functions, function, OF_PIECE(second) },
 		{ "cubic_error", "Bound of its fourth derivative: e leaves the cubic through its ends and slopes by at "
-			  "most d^4/384 |e''''|, this row times |x|", expressions, expression, OF_PIECE(fourth) }
+			  "most d^4/384 |e''''|, this row times |x|", functions, function, OF_PIECE(fourth) }
 	};
 	emit_halvings(e);
 	emit_spacing(e);
@@ -149,7 +150,7 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 			      of_branches(e, pieces, all[i].of), all[i].row_name);
 	emit_ladder(e, pieces, g);
 	if (e->model->params.retuned && e->step->regions.event_check.is_made)
-		emit_own_check(e, pieces, expression);
+		emit_own_check(e, pieces, function);
 	if (g)
 		emit_numbers_of_guards(e, g);
 }
@@ -182,7 +183,7 @@ void emit_regions(const struct emitter *e)
 	if (g && !e->model->params.retuned)
 		emit_guards(e, g);
 	if (e->step->regions.event_check.fast_path) {
-		emit_fast_path_tables(e, &pieces, expression_names(e));
+		emit_fast_path_tables(e, &pieces, function_names_of_regions(e));
 		emit_crossing(e, &pieces);
 	} else if (e->step->regions.event_check.is_made && !g && is_checked_by_tables(e->step)) {
 		emit_spans(e);
@@ -227,7 +228,7 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 static void emit_rests_in_x(const struct emitter *e)
 {
 	int size = e->step->layout.size;
-	say(e, "    for (i = 0; i < %s; i++) { x[%d + i] = s->rest[%s]; }\n", own_states(e), size, place_in_loop(e));
+	say(e, "    for (i = 0; i < %s; i++) { x[%d + i] = s->low[%s]; }\n", own_states(e), size, place_in_loop(e));
 	if (size > e->system->states)
 		say(e, "    for (i = %d; i < %d; i++) { x[%d + i] = 0.0; }\n", e->system->states, size, size);
 }
@@ -249,7 +250,7 @@ void emit_region_vector(const struct emitter *e, bool step)
 /* How much the search has to have for work */
 static const char *room_text(const struct emitter *e)
 {
-	int size = e->step->layout.size, degree = e->step->series.degree, n = regions_of(e)->expressions;
+	int size = e->step->layout.size, degree = e->step->series.degree, n = regions_of(e)->functions;
 	const char *kept = is_compensated(e) ? "COMPENSATED_" : "";
 	return has_guards(e) ? format("PL_GUARDS_%sWORK(%d, %d)", kept, size, degree)
 			     : format("PL_SWITCHING_%sWORK(%d, %d, %d)", kept, size, n, degree);
@@ -271,7 +272,7 @@ void begin_macros(const struct emitter *e, const char *algorithm, const char *ow
 	say_purpose(e, algorithm);
 	say(e, "#define PL(name) %s_##name\n", own);
 	say_macro(e, "TYPE", e->name);
-	say_macro(e, "SINGLE", whole_text(e->model->asked.single));
+	say_macro(e, "SINGLE", integer_text(e->model->request.single));
 }
 
 /* Bit i where entry i of x is never above 1; none in a long x, whose sums are loops */
@@ -288,18 +289,19 @@ static int capped_entries(const struct emitter *e)
 static void emit_search_sizes(const struct emitter *e)
 {
 	const struct switching *s = regions_of(e);
-	const bool divided = s->expressions > 0;
+	const bool switches = s->functions > 0;
 	const struct size all[] = {
 		{ "COMPENSATED", is_compensated(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
-		{ "DEGREE", e->step->series.degree }, { "EXPRESSIONS", s->expressions }, { "IMPACTS", s->impacts },
-		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : divided ? MAX_SPLITS : 0 },
+		{ "DEGREE", e->step->series.degree }, { "SWITCHING_FUNCTIONS", s->functions },
+		{ "IMPACTS", s->impacts },
+		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : switches ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->regions.parts },
 		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.is_made },
 		{ "CAPPED", capped_entries(e) }
 	};
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-		say_macro(e, all[i].name, whole_text(all[i].value));
+		say_macro(e, all[i].name, integer_text(all[i].value));
 }
 
 void emit_search(const struct emitter *e, const char *ladder)
@@ -312,7 +314,7 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "ALL", spell(e, "$N_STATES"));
 	say_macro(e, "WORK", room_text(e));
 	say_macro(e, "H", spell(e, "$N_H"));
-	say_macro(e, "MAX_EVENTS", expressions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
+	say_macro(e, "MAX_EVENTS", functions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
 	say_macro(e, "PLACE(i)", place_in_loop(e));
 	say_macro(e, "PART", e->place);
 	say_macro(e, "LADDER", ladder);
@@ -396,7 +398,7 @@ static void emit_searched_step(const struct emitter *e)
 	emit_segment_end(e);
 }
 
-static void emit_whole_step(const struct emitter *e)
+static void emit_full_step(const struct emitter *e)
 {
 	emit_set_aside(e);
 	emit_raw_locals(e, NULL);
@@ -432,7 +434,8 @@ static const char *event_text(const struct emitter *e)
 static void note_clear_steps(const struct emitter *e, const char *function, const char *second)
 {
 	if (e->step->regions.event_check.is_made)
-		note(e, "1. The whole step is tried: x becomes e^{A h} x. Within it %s leaves the chord through its "
+		note(e,
+		     "1. The whole step is tried: x becomes e^{A h} x. Within it %s leaves the chord through its "
 			"ends by at most h^2/8 times its largest second derivative, which a row times |x| bounds (as "
 			"%s does). Where the chord keeps further than that from %s, nothing happens: that is the step.",
 		     function, second, has_guards(e) ? "the limit" : "the breakpoints");
@@ -464,7 +467,7 @@ void emit_event_note(const struct emitter *e)
 	say(e, "\n/* How an event is found\n *\n");
 	note(e, "Between events the model is linear: x' = A x (%s), x being the states and the loads that act on them, "
 		"so that a step is a product with e^{A h} (%s).", table(e, "slopes"), table(e, "pieces"));
-	note(e, "Event functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
+	note(e, "switching functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
 	     table(e, "row"), table(e, "breakpoint"), event_text(e));
 	note_clear_steps(e, function, table(e, format("%schord_error", of)));
 	note_search(e, function, of);
@@ -490,7 +493,7 @@ void emit_region_step(const struct emitter *e)
 {
 	open_function(e, NULL, "%s", head_of_step(e));
 	if (e->step->regions.event_check.is_made && !has_guards(e))
-		emit_whole_step(e);
+		emit_full_step(e);
 	else
 		emit_searched_step(e);
 	if (e->step->carried.count)           /* what was set aside is in no bound */

@@ -11,7 +11,7 @@ struct guards;
 /* ---- region_tables.c: of regions, tables that there is one of for each matrix, and sums over their rows ---- */
 
 /* Of the table chord_off */
-#define CHORD_NOTE "How far each event function leaves its chord over h, at most: this row times |x|"
+#define CHORD_NOTE "How far each switching function leaves its chord over h, at most: this row times |x|"
 #define OF_PIECE(table) offsetof(struct region_piece, table)     /* a table of each branch, by its place */
 
 struct region_tables {
@@ -33,21 +33,21 @@ bool is_table(const struct region_tables *t);                     /* else all it
 /* Sum of a row over the operands of its columns; further: a term more, or NULL */
 const char *row_text(const struct region_tables *t, int row, const char *const *operand, const char *further,
 		     int indent);
-/* The largest that an expression may be off its chord: `size` of the entries of x that are not bounded.  branch -1: of
- * all */
-const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+/* The largest that a switching function may be off its chord: `size` of the entries of x that are not bounded.  branch
+ * -1: of all */
+const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int function,
 		     const char *const *size, int indent);
-int expressions_of(const struct emitter *e);
+int functions_of(const struct emitter *e);
 bool any_pieces(const struct emitter *e);                         /* of h: then there are tables of all of it too */
 const char **places(const struct emitter *e, const char *layout); /* of each entry of x: x[%d] */
 const char **entries(const struct emitter *e, const char *layout); /* the same; "" where x is 1 */
-const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+const char *text_of_switching(const struct emitter *e, const struct pieces *p, int function,
 			    const char *const *operand, int indent);
 /* Sum of the sizes of those that are not bounded */
 const char *size_of_x(const struct emitter *e, const struct pieces *p, const char *const *size, int indent);
-/* Of a step with the fast path; `expression`: names */
-void emit_spans(const struct emitter *e);                         /* region by region: intervals of expressions */
-void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *expression);
+/* Of a step with the fast path; `function`: names */
+void emit_spans(const struct emitter *e); /* region by region: intervals of switching functions */
+void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *function);
 
 /* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */
 

@@ -2,12 +2,12 @@
 /* Of regions: tables that there is one of for each matrix, and sums over their rows as text. */
 #include "inner.h"
 #include "emit/steps.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
-int expressions_of(const struct emitter *e)
+int functions_of(const struct emitter *e)
 {
-	return e->model->switching->expressions;
+	return e->model->switching->functions;
 }
 
 /* ---- tables: of the file, or where params are tunable of an instance ---- */
@@ -71,7 +71,7 @@ void put_wholes(const struct emitter *e, bool own, const char *name, const char 
 	const char **item = ARRAY(const char *, (size_t)count + 1);
 	item[0] = "0";
 	for (int i = 0; i < count; i++)
-		item[i] = whole_text(number[i]);
+		item[i] = integer_text(number[i]);
 	put_list(e, own, "int", name, note, count > 0 ? count : 1, 20, item);
 }
 
@@ -194,10 +194,10 @@ struct region_tables of_branch(struct region_tables t, int branch)
 	return t;
 }
 
-const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int expression,
+const char *off_text(const struct emitter *e, const struct pieces *p, int branch, int function,
 			    const char *const *size, int indent)
 {
-	int n = expressions_of(e);
+	int n = functions_of(e);
 	struct region_tables off = tables_of_regions(e, p, spell(e, "$o_chord_off[which]"), n, OF_PIECE(off)),
 		      still = tables_of_regions(e, p, spell(e, "$o_still[which]"), 1, OF_PIECE(still));
 	still.columns = n;
@@ -206,10 +206,10 @@ const char *off_text(const struct emitter *e, const struct pieces *p, int branch
 		still = of_branch(still, branch);
 	}
 	const char *further = NULL;
-	if (acts_at(&still, 0, expression))
-		further = agree_at(&still, 0, expression) ? shortest(still.value[still.from][expression])
-							  : spell(e, "$o_still[which][%d]", expression);
-	return row_text(&off, expression, size, further, indent);
+	if (acts_at(&still, 0, function))
+		further = agree_at(&still, 0, function) ? shortest(still.value[still.from][function])
+							  : spell(e, "$o_still[which][%d]", function);
+	return row_text(&off, function, size, further, indent);
 }
 
 /* ---- of a step that is checked for events over h ---- */
@@ -228,13 +228,13 @@ bool any_pieces(const struct emitter *e)
 	return any;
 }
 
-/* Of each region and expression */
-typedef const char *entry_text(const struct emitter *e, const struct pieces *p, int region, int expression);
+/* Of each region and switching function */
+typedef const char *entry_text(const struct emitter *e, const struct pieces *p, int region, int function);
 
 static void emit_of_regions(const struct emitter *e, const char *type, const char *name, const char *note,
 			    const char *inner, entry_text *text, const struct pieces *p)
 {
-	int regions = e->model->switching->regions, n = expressions_of(e);
+	int regions = e->model->switching->regions, n = functions_of(e);
 	open_as(e, false, type, name, format("[%d][%d]%s", regions, n, inner), note);
 	for (int r = 0; r < regions; r++)
 		for (int i = 0; i < n; i++)
@@ -242,24 +242,24 @@ static void emit_of_regions(const struct emitter *e, const char *type, const cha
 	close_as(e, false);
 }
 
-static const char *span_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+static const char *span_text(const struct emitter *e, const struct pieces *p, int region, int function)
 {
 	(void)p;
-	return whole_text(interval_of(e->model->switching, region, expression));
+	return integer_text(interval_of(e->model->switching, region, function));
 }
 
-static const char *within_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+static const char *within_text(const struct emitter *e, const struct pieces *p, int region, int function)
 {
-	int at = region * expressions_of(e) + expression;
+	int at = region * functions_of(e) + function;
 	return format("{%s, %s}", shortest(p->low[at]), shortest(p->high[at]));
 }
 
-static const char *beyond_text(const struct emitter *e, const struct pieces *p, int region, int expression)
+static const char *beyond_text(const struct emitter *e, const struct pieces *p, int region, int function)
 {
 	const struct switching *s = e->model->switching;
-	int interval = interval_of(s, region, expression), stride = s->expression[expression].stride;
+	int interval = interval_of(s, region, function), stride = s->function[function].stride;
 	bool below = interval > 0 && s->region[region - stride].possible,
-	     above = interval < s->expression[expression].breaks && s->region[region + stride].possible;
+	     above = interval < s->function[function].breaks && s->region[region + stride].possible;
 	(void)p;
 	return format("{%d, %d}", below ? region - stride : -1, above ? region + stride : -1);
 }
@@ -267,22 +267,22 @@ static const char *beyond_text(const struct emitter *e, const struct pieces *p, 
 void emit_spans(const struct emitter *e)
 {
 	emit_of_regions(e, "int", "span",
-		     "Number of the interval of each event function in each region, from the lowest one",
+		     "Number of the interval of each switching function in each region, from the lowest one",
 		     "", span_text, NULL);
 }
 
 static void emit_neighbours(const struct emitter *e, const struct pieces *p)
 {
 	emit_of_regions(e, "double", "within",
-		     "Lower and upper end of each event function's interval in each region", "[2]", within_text, p);
+		     "Lower and upper end of each switching function's interval in each region", "[2]", within_text, p);
 	emit_of_regions(e, "int", "beyond",
 		     "Regions across those ends, below and above; -1: none that can occur", "[2]", beyond_text, p);
 	emit_spans(e);
 }
 
-void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *expression)
+void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *function)
 {
-	int n = expressions_of(e);
+	int n = functions_of(e);
 	struct region_tables off = tables_of_regions(e, p, "", n, OF_PIECE(off)),
 			     slack = tables_of_regions(e, p, "", n, OF_PIECE(slack)),
 			     third = tables_of_regions(e, p, "", n, OF_PIECE(third)),
@@ -292,25 +292,25 @@ void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, cons
 		struct region_tables turn = tables_of_regions(e, p, "", n, OF_PIECE(turn)),
 			      bend = tables_of_regions(e, p, "", n, OF_PIECE(bend));
 		emit_of_each(e, &turn, "step_tangent",
-			     "Slope of each event function over all of h, in place of a piece: times x, h/3 e'",
-			     expression);
+			     "Slope of each switching function over all of h, in place of a piece: times x, h/3 e'",
+			     function);
 		emit_of_each(e, &bend, "step_cubic_error",
 			     "Bound of its fourth derivative over all of h: times |x|, at least h^4/384 |e''''|",
-			     expression);
+			     function);
 	}
 	bool reads = any_pieces(e) || is_checked_by_tables(e->step);    /* what they are off their chords */
 	if (reads && is_table(&off))
 		emit_of_each(e, &off, "chord_off",
-			     CHORD_NOTE, expression);
+			     CHORD_NOTE, function);
 	if (reads && is_table(&still))
 		emit_of_branches(e, p, "still",
 			     "What the entries of x that are never above 1 (1, cos, sin) add to that bound",
 			     n, OF_PIECE(still));
 	emit_of_each(e, &slack, "slack",
-		     "Rounding error of each event function and of h e': at most this row times |x|", expression);
+		     "Rounding error of each switching function and of h e': at most this row times |x|", function);
 	emit_of_each(e, &third, "jerk",
-		     "Bound of the third derivative of each event function: times |x|, at least h^3/24 |e'''|",
-		     expression);
+		     "Bound of the third derivative of each switching function: times |x|, at least h^3/24 |e'''|",
+		     function);
 	emit_neighbours(e, p);
 }
 
@@ -333,14 +333,14 @@ const char **entries(const struct emitter *e, const char *layout)
 	return text;
 }
 
-const char *expression_text(const struct emitter *e, const struct pieces *p, int expression,
+const char *text_of_switching(const struct emitter *e, const struct pieces *p, int function,
 				   const char *const *operand, int indent)
 {
 	int size = e->step->layout.size;
 	struct summands s = { 0 };
 	for (int j = 0; j < size; j++)
-		if (p->row[expression * size + j] != 0)
-			add_summand(&s, scaled(p->row[expression * size + j], *operand[j] ? operand[j] : NULL));
+		if (p->row[function * size + j] != 0)
+			add_summand(&s, scaled(p->row[function * size + j], *operand[j] ? operand[j] : NULL));
 	return sum_of(&s, indent);
 }
 
@@ -368,7 +368,7 @@ void emit_state_of_x(const struct emitter *e)
 	say(e, "    for (i = 0; i < %s; i++) {\n"
 	       "        s->y[%s] = x[i];\n", own_states(e), place_in_loop(e));
 	if (is_compensated(e))
-		say(e, "        s->rest[%s] = x[%d + i];\n", place_in_loop(e), e->step->layout.size);
+		say(e, "        s->low[%s] = x[%d + i];\n", place_in_loop(e), e->step->layout.size);
 	say(e, "    }\n");
 }
 

@@ -53,7 +53,7 @@ void emit_series_ahead(const struct emitter *e)
 
 bool expansion_places(const struct emitter *e)
 {
-	return looks_at_tolerance(e) || spans_steps(e) || is_divided(e);
+	return looks_at_tolerance(e) || spans_steps(e) || has_switching(e);
 }
 
 void emit_expansion_place(const struct emitter *e)
@@ -74,7 +74,7 @@ static void emit_keep(const struct emitter *e)
 	       "    } else {\n");
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = next%d;\n"
-		       "        s->rest[%d] = rest%d;\n", i, i, i, i);
+		       "        s->low[%d] = low%d;\n", i, i, i, i);
 	say(e, "    }\n");
 }
 
@@ -85,7 +85,7 @@ static void emit_straight_step(const struct emitter *e)
 	say(e, "    const double *const y = s->y;\n");
 	emit_coefficients(e);
 	for (int i = 0; i < e->system->states; i++)
-		say(e, "    double rest%d = s->rest[%d];\n", i, i);
+		say(e, "    double low%d = s->low[%d];\n", i, i);
 	emit_series_ends(e);
 	emit_keep(e);
 	emit_step_end(e);
@@ -105,10 +105,10 @@ static void emit_total(const struct emitter *e)
 {
 	open_function(e, "The end of the series that begins at y: high and low parts",
 		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
-		      "double end[$N_STATES], double rest[$N_STATES])", own_expansion(e)->order + 1);
+		      "double end[$N_STATES], double low[$N_STATES])", own_expansion(e)->order + 1);
 	for (int i = 0; i < e->system->states; i++)
-		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &rest[%d]);\n", i, i,
-				      whole_gain(e, i, term_of_series), i));
+		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &low[%d]);\n", i, i,
+				      full_gain(e, i, term_of_series), i));
 	close_function(e, "");
 }
 
@@ -132,7 +132,7 @@ static void emit_end(const struct emitter *e)
 	int order = own_expansion(e)->order, states = e->system->states;
 	open_function(e, "The state m steps after the start of the series: high and low parts",
 		      "static void $n_end(const double c[%d][$c], double m, double end[$N_STATES], "
-		      "double rest[$N_STATES])", order + 1);
+		      "double low[$N_STATES])", order + 1);
 	emit_powers(e, order);
 	for (int i = 0; i < states; i++) {
 		const char *text = "", *late = "";
@@ -140,7 +140,7 @@ static void emit_end(const struct emitter *e)
 			late = plus(late, term_of_end(i, k));
 		for (int k = order - LATE; k > 1; k--)
 			text = plus(text, term_of_end(i, k));
-		say_wrapped(e, format("end[%d] = pl_accumulate(c[0][%d], %s, %s + %s, &rest[%d]);\n", i, i,
+		say_wrapped(e, format("end[%d] = pl_accumulate(c[0][%d], %s, %s + %s, &low[%d]);\n", i, i,
 				      term_of_end(i, 1), text, late, i));
 	}
 	close_function(e, "");
@@ -162,7 +162,7 @@ static void emit_within(const struct emitter *e)
 {
 	open_function(e, "The state theta after the start of the series",
 		      "static inline void $n_within($n *s, double theta)");
-	emit_value(e, "theta", kept_term, truncation_of(e)->adaptive ? "s->base[%d]" : "s->rest[%d]", "    ");
+	emit_value(e, "theta", kept_term, truncation_of(e)->adaptive ? "s->base[%d]" : "s->low[%d]", "    ");
 	close_function(e, "");
 }
 
@@ -194,8 +194,8 @@ void emit_expansion_members(const struct emitter *e)
 	if (looks_at_tolerance(e))
 		say(e, "    double scale[$c], unit[$c];  "
 		       "/* largest size of each state so far; its reciprocal */\n");
-	if (is_divided(e))
-		emit_divided_members(e);
+	if (has_switching(e))
+		emit_switching_members(e);
 }
 
 /* ---- what taylor.h is told ---- */
@@ -232,8 +232,8 @@ static void emit_algorithm(const struct emitter *e)
 	const struct truncation *t = truncation_of(e);
 	emit_sizes(e, "taylor.h", { "STATES", e->system->states }, { "COLUMNS", e->system->states + x->columns },
 		   { "MEASURED", x->measured }, { "ORDER", x->order }, { "INPUTS", e->system->inputs },
-		   { "SEGMENTS", e->system->segments }, { "EXPRESSIONS", is_divided(e) ? x->expressions : 0 },
-		   { "TERMS", is_divided(e) ? terms_of_events(e) : 0 },
+		   { "SEGMENTS", e->system->segments }, { "SWITCHING_FUNCTIONS", has_switching(e) ? x->functions : 0 },
+		   { "TERMS", has_switching(e) ? terms_of_events(e) : 0 },
 		   { "CONTACTS", meets_contacts(e) }, { "CHOICES", has_choices(e) }, { "ADAPTIVE", t->adaptive },
 		   { "WATCHED", watches(e) }, { "REMAINDERS", t->adaptive ? 3 : watches(e) },
 		   { "KINDS", shares_kinds(e) }, { "FLOORS", has_floors(e) }, { "OVER", spans_steps(e) ? t->over : 1 },
@@ -243,8 +243,8 @@ static void emit_algorithm(const struct emitter *e)
 		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
 		   { "AT", e->step->series.emitted });
-	if (is_divided(e))
-		emit_divided_macros(e);
+	if (has_switching(e))
+		emit_switching_macros(e);
 	if (looks_at_tolerance(e))
 		emit_reach_sizes(e);
 	say(e, "#include \"taylor.h\"\n");
@@ -263,8 +263,8 @@ void emit_expansion_step(const struct emitter *e)
 		emit_hidden_table(e);
 	if (spans_steps(e))
 		emit_over_table(e);
-	if (is_divided(e))
-		emit_divided_tables(e);
+	if (has_switching(e))
+		emit_switching_tables(e);
 	if (meets_contacts(e))
 		emit_event_tables(e);
 	emit_algorithm(e);

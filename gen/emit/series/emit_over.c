@@ -14,7 +14,7 @@ static int order_of(const struct emitter *e)
  * ask for. */
 bool runs_in_blocks(const struct emitter *e)
 {
-	return spans_steps(e) && wants_rows(&e->model->asked) && !has_ranges(e) && !has_peaks(e) &&
+	return spans_steps(e) && wants_rows(&e->model->request) && !has_ranges(e) && !has_peaks(e) &&
 	       expands_in_step(e) && !watches(e) && is_written_out(e, order_of(e));
 }
 
@@ -85,7 +85,7 @@ static void emit_rows_of_block(const struct emitter *e)
 		} else {
 			for (int i = 0; i < states; i++)
 				say(e, "    s->y[%d] = next%d;\n"
-				       "    s->rest[%d] = rest%d;\n", i, i, i, i);
+				       "    s->low[%d] = low%d;\n", i, i, i, i);
 		}
 		emit_step_end(e);
 		say(e, "    if (out) { $n_out(s, out%s); }\n",
@@ -106,8 +106,8 @@ void emit_over_block(const struct emitter *e)
 	       "    const double *const y = s->y;\n", truncation_of(e)->over);
 	emit_coefficients(e);
 	for (int i = 0; i < states; i++)
-		say(e, "    const double base%d = s->rest[%d];\n"
-		       "    double rest%d = base%d;\n", i, i, i, i);
+		say(e, "    const double base%d = s->low[%d];\n"
+		       "    double low%d = base%d;\n", i, i, i, i);
 	emit_series_ends(e);
 	say_wrapped(e, format("if (%s) { return 0; }\n", is_not_finite(e, "next", "")));
 	emit_rows_of_block(e);

@@ -2,7 +2,7 @@
 /* Functions of a series: what they are handed, what of loads and inputs they read, its coefficients. */
 #include "inner.h"
 #include "emit/steps.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
 
@@ -28,14 +28,14 @@ const struct emitter *by_series(const struct emitter *e, struct expansion *x)
 
 /* ---- what is asked of it ---- */
 
-bool is_divided(const struct emitter *e)
+bool has_switching(const struct emitter *e)
 {
-	return e->step->taylor.divided != NULL;
+	return e->step->taylor.switching != NULL;
 }
 
 bool has_offset(const struct emitter *e)
 {
-	return e->model->truncation.adaptive || loads_change(e->system) || is_divided(e);
+	return e->model->truncation.adaptive || loads_change(e->system) || has_switching(e);
 }
 
 bool spans_steps(const struct emitter *e)
@@ -128,11 +128,11 @@ bool expands_in_step(const struct emitter *e)
 void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target)
 {
 	struct tape *t = tape_of_recurrences(r);
-	for (int i = 0; i < x->expressions; i++)
-		tape_set(t, format("%s[%d]", target, i), recurrence_size(r, x->expression[i].sequence), 10, NULL);
+	for (int i = 0; i < x->functions; i++)
+		tape_set(t, format("%s[%d]", target, i), recurrence_size(r, x->function[i].sequence), 10, NULL);
 	for (int i = 0; x->contacts && i < x->contacts->watches; i++)
-		tape_set(t, format("%s[%d]", target, x->expressions + i),
-			 recurrence_whole_size(r, x->contacts->watch[i].sequence), 10, NULL);
+		tape_set(t, format("%s[%d]", target, x->functions + i),
+			 recurrence_full_size(r, x->contacts->watch[i].sequence), 10, NULL);
 }
 
 /* The coefficients that are kept, of states and beside them, into c[][]; sizes for the search of events into terms[] */
@@ -211,7 +211,7 @@ void emit_ends_function(const struct emitter *e)
 	for (int k = 0; k <= 1; k++)
 		for (int c = 0; c < x->columns; c++)
 			recurrence_set(r, format("e[%d][%d]", k, c), x->column[c], k);
-	series_set_sizes(r, e->step->taylor.divided, "terms");
+	series_set_sizes(r, e->step->taylor.switching, "terms");
 	end_function(e, r);
 }
 
@@ -230,7 +230,7 @@ const char *plus(const char *sum, const char *term)
 }
 
 /* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
-const char *whole_gain(const struct emitter *e, int state, gain_term *term)
+const char *full_gain(const struct emitter *e, int state, gain_term *term)
 {
 	enum { LATE = 3 };
 	int order = own_expansion(e)->order;
@@ -245,8 +245,8 @@ const char *whole_gain(const struct emitter *e, int state, gain_term *term)
 void emit_series_ends(const struct emitter *e)
 {
 	for (int i = 0; i < e->system->states; i++)
-		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &rest%d);\n", i,
-				      coefficient(e, i, 0), whole_gain(e, i, coefficient), i));
+		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &low%d);\n", i,
+				      coefficient(e, i, 0), full_gain(e, i, coefficient), i));
 }
 
 /* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
@@ -260,6 +260,6 @@ const char *is_not_finite(const struct emitter *e, const char *before, const cha
 
 int terms_of_events(const struct emitter *e)
 {
-	const struct expansion *x = e->step->taylor.divided;
-	return x->expressions + (x->contacts ? x->contacts->watches : 0);
+	const struct expansion *x = e->step->taylor.switching;
+	return x->functions + (x->contacts ? x->contacts->watches : 0);
 }

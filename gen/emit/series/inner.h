@@ -14,7 +14,7 @@ const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-
 void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
 const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
-const char *whole_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
+const char *full_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
 void emit_series_ends(const struct emitter *e);                         /* next0, rest0, ...: where it ends */
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */

@@ -12,7 +12,7 @@ struct expansion;
 /* The same emitter, whose series is this one */
 const struct emitter *by_series(const struct emitter *e, struct expansion *x);
 void emit_expand_from(const struct emitter *e);                   /* all that is kept */
-bool is_divided(const struct emitter *e);                         /* the state chooses formulas */
+bool has_switching(const struct emitter *e);                      /* the state chooses formulas */
 const char *driven_parameter(const struct emitter *e);            /* const double u[N_INPUTS], or "" */
 void emit_inputs_now(const struct emitter *e);                    /* NAME_inputs_now: samples, their slopes */
 void emit_force_table(const struct emitter *e);                   /* of loads that change their formula */
@@ -64,15 +64,15 @@ void emit_event_split_members(const struct emitter *e);
 void emit_event_split_place(const struct emitter *e);
 void emit_event_split_step(const struct emitter *e);
 
-/* ---- emit_divided.c: formulas that the state chooses, from one crossing to the next ---- */
+/* ---- emit_switching.c: formulas that the state chooses, from one crossing to the next ---- */
 
-void emit_divided_types(const struct emitter *e);                 /* NAME_contact; nothing where there are none */
-void emit_divided_members(const struct emitter *e);
-void emit_divided_declarations(const struct emitter *e);
+void emit_switching_types(const struct emitter *e);               /* NAME_contact; nothing where there are none */
+void emit_switching_members(const struct emitter *e);
+void emit_switching_declarations(const struct emitter *e);
 void emit_crossing_declarations(const struct emitter *e);         /* NAME_region, NAME_crossed, NAME_crossings */
-void emit_divided_tables(const struct emitter *e);               /* of the breakpoints, of the series */
+void emit_switching_tables(const struct emitter *e);             /* of the breakpoints, of the series */
 void emit_passing_table(const struct emitter *e, int order);      /* the same, of polynomials of each and of watches */
-void emit_divided_macros(const struct emitter *e);               /* what chosen.h asks of them */
+void emit_switching_macros(const struct emitter *e);             /* what chosen.h asks of them */
 
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 

@@ -62,7 +62,7 @@ void emit_held_declarations(const struct emitter *e)
 {
 	if (!tunables_of(e->model))
 		return;
-	const bool own = e->step->is.tuned, any = own && e->step->blocks->whole;
+	const bool own = e->step->is.tuned, any = own && e->step->blocks->full;
 	const char *more = own ? e->model->params.tuning->frequencies ? ", PL_SINGULAR, PL_NO_RATE" : ", PL_SINGULAR"
 			       : e->model->params.retuned ? ", PL_SINGULAR, PL_OUT_OF_RANGE" : "";
 	const char *ranged = has_param_ranges(e) && !e->model->params.retuned ? ", PL_OUT_OF_RANGE" : "";
@@ -83,7 +83,7 @@ static void banner_blocks(const struct emitter *e)
 		    p->touched == p->all ? format("all %d", p->all) : format("%d of %d", p->touched, p->all));
 	say(e, "$n_retune computes factors from other values%s on the\n"
 	       " * target; of the spec's they are these, correctly rounded. It needs some %d KB of stack.\n",
-	    p->whole ? " and another h" : "", p->kilobytes);
+	    p->full ? " and another h" : "", p->kilobytes);
 }
 
 void banner_held(const struct emitter *e)

@@ -115,15 +115,15 @@ static void list_guard_rows(const struct emitter *e, struct list *l, const struc
 {
 	for (int i = 0; i < g->rows; i++) {
 		const struct guard_key *guard_row = &g->guard_row[i];
-		if (guard_row->expression >= 0)
-			from(e, l, RETUNED_EXPRESSION, guard_row->segment, guard_row->expression, !guard_row->upward);
+		if (guard_row->function >= 0)
+			from(e, l, RETUNED_FUNCTION, guard_row->segment, guard_row->function, !guard_row->upward);
 		else
 			from(e, l, RETUNED_RELEASE, guard_row->region, guard_row->release, false);
 	}
 	for (int i = 0; i < g->guards; i++) {
 		const struct guard *guard = &g->guard[i];
-		if (g->guard_row[guard->row].expression >= 0)
-			from(e, l, RETUNED_BREAK, guard->expression, guard->breakpoint, !guard->upward);
+		if (g->guard_row[guard->row].function >= 0)
+			from(e, l, RETUNED_BREAK, guard->function, guard->breakpoint, !guard->upward);
 		else
 			add(l, 0);
 	}
@@ -149,10 +149,10 @@ static int emit_from(const struct emitter *e, const struct guards *g)
 	const struct switching *s = e->model->switching;
 	struct list l = { 0 };
 	for (int segment = 0; segment < s->segments; segment++)
-		for (int i = 0; i < s->expressions; i++)
-			from(e, &l, RETUNED_EXPRESSION, segment, i, false);
-	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].breaks; k++)
+		for (int i = 0; i < s->functions; i++)
+			from(e, &l, RETUNED_FUNCTION, segment, i, false);
+	for (int i = 0; i < s->functions; i++)
+		for (int k = 0; k < s->function[i].breaks; k++)
 			from(e, &l, RETUNED_BREAK, i, k, false);
 	if (has_guards(e)) {
 		list_guard_rows(e, &l, g);
@@ -174,7 +174,7 @@ static bool rows_change(const struct emitter *e)
 	bool change = false;
 	for (int i = 0; i < r->rows; i++)
 		change = change || (r->row[i].place >= 0 &&
-				    (r->row[i].kind == RETUNED_EXPRESSION || r->row[i].kind == RETUNED_RELEASE));
+				    (r->row[i].kind == RETUNED_FUNCTION || r->row[i].kind == RETUNED_RELEASE));
 	return change;
 }
 
@@ -225,9 +225,9 @@ static void emit_gathering(const struct emitter *e)
 	emit_int_list(e, "stay_param", stays, param);
 	if (any_still(e->step))
 		emit_int_list(e, "pair", pair.count, pair.number);
-	say_macro(e, "STAYS", whole_text(stays));
-	say_macro(e, "PAIRS", whole_text(pair.count));
-	say_macro(e, "STILL", whole_text(any_still(e->step)));
+	say_macro(e, "STAYS", integer_text(stays));
+	say_macro(e, "PAIRS", integer_text(pair.count));
+	say_macro(e, "STILL", integer_text(any_still(e->step)));
 	say_macro(e, "LARGE", shortest(LARGE_ENOUGH));
 	say_macro(e, "FOLDED", shortest(FOLDED));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
@@ -247,7 +247,8 @@ void emit_retuned(const struct emitter *e)
 	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
 	emit_sizes(e, "retuned.h", { "PARAMS", e->model->params.held->params }, { "WRAPPED", wraps_retune(e) },
 		   { "SIZE", e->step->layout.size },
-		   { "STATES", e->system->states }, { "EXPRESSIONS", s->expressions }, { "BREAKS", breaks_of_all(s) },
+		   { "STATES", e->system->states }, { "SWITCHING_FUNCTIONS", s->functions },
+		   { "BREAKS", breaks_of_all(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
 		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
 		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
@@ -270,7 +271,7 @@ int retuned_numbers(const struct emitter *e)
 
 int retuned_kilobytes(const struct emitter *e)
 {
-	int size = e->step->layout.size, cells = size * size, real = e->model->asked.single ? 4 : 8;
+	int size = e->step->layout.size, cells = size * size, real = e->model->request.single ? 4 : 8;
 	int twos = retuned_of(e)->all.rows * size + 8 * cells + widest_block(e);
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }

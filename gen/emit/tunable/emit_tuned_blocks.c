@@ -69,10 +69,10 @@ static void emit_loads(const struct emitter *e, const char *type, const char *na
 static void emit_group(const struct emitter *e, const struct tuned_block *first)
 {
 	const struct group_shape shape = shape_of_group(e, first->group);
-	const char *whole = e->step->form == FORM_DELTA ? "y += step z" : "y = step z";
+	const char *full = e->step->form == FORM_DELTA ? "y += step z" : "y = step z";
 	if (shape.rows) {
 		open_member(e, "double", tuned_table(e, first), format("[%d][%d]", shape.rows, shape.columns),
-			    blocks_of_step(e)->solved ? whole : format("%s: %s", first_state(e, first->group),
+			    blocks_of_step(e)->solved ? full : format("%s: %s", first_state(e, first->group),
 								       group_note(e, first->group)));
 		emit_group_numbers(e, first->group, false);
 		close_member(e);
@@ -320,11 +320,11 @@ static void emit_rows_of_loads(const struct emitter *e)
 		if (e->phase[l] >= 0)
 			row[e->phase[l]] = blocks_of_step(e)->frequency[l];
 		if (e->growth[l] >= 0)
-			decays[e->growth[l]] = mpq_sgn(e->system->load[l].wave->a) < 0;
+			decays[e->growth[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
 	}
 	if (e->model->params.tuning->frequencies)
 		emit_integers(e, "short", "rate_row", e->phases, row);
-	if (e->growths && blocks_of_step(e)->whole)
+	if (e->growths && blocks_of_step(e)->full)
 		emit_integers(e, "unsigned char", "decays", e->growths, decays);
 }
 
@@ -353,7 +353,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 	const struct tuned_blocks *p = blocks_of_step(e);
 	emit_sizes(e, "retune.h", { "STATES", e->system->states }, { "PARAMS", t->params },
 		   { "WRAPPED", wraps_retune(e) },
-		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->whole },
+		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->full },
 		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
 		   { "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },

@@ -43,7 +43,7 @@ static const char *cell(const char *table, int index, int columns)
 
 const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	const int width = table->states + table->columns + table->inputs, i = n->index;
 	const struct layout *x = e->model->params.tuning ? &e->model->params.tuning->x : NULL;
 	switch (n->part) {

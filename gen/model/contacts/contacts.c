@@ -57,7 +57,7 @@ static void find_drags(struct building *b)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	for (int i = 0; i < b->model->n; i++) {
-		const struct form *form = b->whole->residual[i].form;
+		const struct form *form = b->full->residual[i].form;
 		for (int k = 0; k < form->terms; k++) {
 			const struct atom *a = form->term[k].basis.atom;
 			if (!a)

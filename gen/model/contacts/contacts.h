@@ -3,7 +3,7 @@
 #ifndef PLGEN_MODEL_CONTACTS_H
 #define PLGEN_MODEL_CONTACTS_H
 
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/model.h"
 #include "model/regions/regions.h"
 
@@ -22,8 +22,8 @@ struct impact_law {                 /* what an impact is in one segment of time 
 	mpq_t *direction;           /* d, per coordinate */
 	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;
-	int expression;             /* its guard is a multiple of this one, less a breakpoint, */
-	mpq_t at, factor;           /* guard = factor (expression - at) */
+	int function;               /* its guard is a multiple of this one, less a breakpoint, */
+	mpq_t at, factor;           /* guard = factor (switching function - at) */
 	bool upward;                /* which it passes this way */
 };
 struct impact {                     /* of `when`, or of a stop */
@@ -33,12 +33,13 @@ struct impact {                     /* of `when`, or of a stop */
 	struct impact_law *in;      /* per segment of time of the model */
 };
 
-/* friction(v, F): v is an expression less a breakpoint that stands there twice, the interval of sticking between */
+/* friction(v, F): v is a switching function less a breakpoint that stands there twice, the interval of sticking between
+ * */
 struct friction {                   /* in one segment of time */
 	const struct atom *atom;
-	int segment, expression;
+	int segment, function;
 	mpq_t at;                   /* that breakpoint */
-	mpq_t factor;               /* v = factor (expression - at) */
+	mpq_t factor;               /* v = factor (switching function - at) */
 	bool negative;              /* F may fall below 0, and counts as 0 there */
 	bool low;                   /* S may fall below F, and counts as F there */
 };
@@ -51,7 +52,7 @@ struct slider {
 /* It slides beyond a breakpoint of q - F or of -q - F; F may be another one in each region */
 struct slide {
 	int way;                    /* 1 or -1 where it slides */
-	int expression[2];          /* that of either */
+	int function[2];            /* that of either */
 	mpq_t at[2];                /* its breakpoint, */
 	bool upward[2];             /* which is passed upward where the sliding begins */
 };
@@ -67,7 +68,7 @@ struct hold {                       /* a state that a region gives: of what stic
 	struct output *row;
 };
 struct release {                    /* of what sticks: the interval is left where the form becomes greater than 0 */
-	int expression;
+	int function;
 	bool upward;
 	struct form *form;          /* it may have highest derivatives */
 	struct output *row;         /* over states, loads and inputs alone */
@@ -88,10 +89,10 @@ _Noreturn void report_no_events(const struct building *b, struct place at);
 
 /* ---- events.c: what is held in regions, and what begins there ---- */
 
-bool is_stick(const struct expression *e, int interval);    /* between two equal breakpoints */
-/* In one segment of time: which begins where an expression passes a breakpoint this way; -1: none does */
-int  impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward);
-int  impact_resting(const struct switching *s, int segment, int expression, int interval); /* there; -1: none does */
+bool is_stick(const struct switching_function *e, int interval);    /* between two equal breakpoints */
+/* In one segment of time: which begins where a switching function passes a breakpoint this way; -1: none does */
+int  impact_at(const struct switching *s, int segment, int function, mpq_srcptr at, bool upward);
+int  impact_resting(const struct switching *s, int segment, int function, int interval); /* there; -1: none does */
 /* the interval in which it rests; -1: it is no bounce */
 int  rest_of(const struct switching *s, int segment, const struct impact *impact);
 bool has_contacts(const struct model *model);                /* impacts, friction without regions */

@@ -2,21 +2,21 @@
 /* Intervals of regions in which something is held, and what begins at their ends. */
 #include "contacts.h"
 
-int impact_at(const struct switching *s, int segment, int expression, mpq_srcptr at, bool upward)
+int impact_at(const struct switching *s, int segment, int function, mpq_srcptr at, bool upward)
 {
 	for (int i = 0; i < s->impacts; i++) {
 		const struct impact_law *impact_law = &s->impact[i].in[segment];
-		if (impact_law->expression == expression && impact_law->upward == upward &&
+		if (impact_law->function == function && impact_law->upward == upward &&
 		    mpq_equal(impact_law->at, at))
 			return i;
 	}
 	return -1;
 }
 
-int impact_resting(const struct switching *s, int segment, int expression, int interval)
+int impact_resting(const struct switching *s, int segment, int function, int interval)
 {
 	for (int i = 0; i < s->impacts; i++)
-		if (s->impact[i].bounces && s->impact[i].in[segment].expression == expression &&
+		if (s->impact[i].bounces && s->impact[i].in[segment].function == function &&
 		    rest_of(s, segment, &s->impact[i]) == interval)
 			return i;
 	return -1;
@@ -25,7 +25,7 @@ int impact_resting(const struct switching *s, int segment, int expression, int i
 int rest_of(const struct switching *s, int segment, const struct impact *impact)
 {
 	const struct impact_law *impact_law = &impact->in[segment];
-	const struct expression *e = &s->expression[impact_law->expression];
+	const struct switching_function *e = &s->function[impact_law->function];
 	for (int k = 1; k < e->breaks && impact->bounces; k++)
 		if (is_stick(e, k) && mpq_equal(e->at[k], impact_law->at))
 			return k;

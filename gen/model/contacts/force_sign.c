@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The sign of a friction force F, as far as it is seen: F is at 0 or above as long as a sum of powers, exponentials and
- * waves of time is, beside what never is below 0. */
+ * forcing terms of time is, beside what never is below 0. */
 #include "friction.h"
 
 /* max(5*y + 1, 0), abs(x), x^2, t < 1 ? 1 : 2 */
@@ -19,7 +19,8 @@ static bool is_never_negative(const struct atom *a)
 	return never;
 }
 
-/* A sum of powers, exponentials and waves of time; what else never is below 0 is left out. False: there is more. */
+/* A sum of powers, exponentials and forcing terms of time; what else never is below 0 is left out. False: there is
+ * more. */
 static bool sum_of_time(const struct form *force, bool minus, struct summand *sum, int *summands, mpq_t *number)
 {
 	*summands = 0;
@@ -30,7 +31,7 @@ static bool sum_of_time(const struct form *force, bool minus, struct summand *su
 		if (basis->kind == BASIS_ATOM && mpq_sgn(term->factor) == (minus ? -1 : 1) &&
 		    is_never_negative(basis->atom))
 			continue;
-		if (basis->kind > BASIS_WAVE)
+		if (basis->kind > BASIS_FORCING)
 			return false;
 		mpq_ptr factor = number[1 + i];
 		mpq_set(factor, term->factor);
@@ -40,11 +41,12 @@ static bool sum_of_time(const struct form *force, bool minus, struct summand *su
 		}
 		if (minus)
 			mpq_neg(factor, factor);
-		bool waves = basis->kind == BASIS_WAVE;
-		sum[(*summands)++] = (struct summand){ factor, waves ? basis->wave->a : number[0],
-						       waves ? basis->wave->w : number[0],
-						       waves ? basis->wave->p : number[0], waves ? basis->power : 0,
-						       waves && basis->sine };
+		bool forcings = basis->kind == BASIS_FORCING;
+		sum[(*summands)++] = (struct summand){ factor, forcings ? basis->forcing->a : number[0],
+						       forcings ? basis->forcing->w : number[0],
+						       forcings ? basis->forcing->p : number[0],
+						       forcings ? basis->power : 0,
+						       forcings && basis->sine };
 	}
 	return true;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dry friction in regions. The sliding velocity v of friction(v, F) is an expression with a breakpoint that stands
- * twice: below it the force is -F, above it F, and between, where it sticks, what keeps v at 0. There an equation that
- * the force acts on is solved for it and put into the others, and v' = 0 stands in its place; the state whose rate that
- * is follows from the others. Sticking ends where the force would have to be above F, the convention of Filippov
- * (Differential Equations with Discontinuous Righthand Sides, 1988). */
+/* Dry friction in regions. The sliding velocity v of friction(v, F) is a switching function with a breakpoint that
+ * stands twice: below it the force is -F, above it F, and between, where it sticks, what keeps v at 0. There an
+ * equation that the force acts on is solved for it and put into the others, and v' = 0 stands in its place; the state
+ * whose rate that is follows from the others. Sticking ends where the force would have to be above F, the convention of
+ * Filippov (Differential Equations with Discontinuous Righthand Sides, 1988). */
 #include "inner.h"
 #include "model/building.h"
 
@@ -73,7 +73,7 @@ bool is_repeated(const struct switching *s, int friction)
 
 int stick_of(const struct switching *s, const struct friction *f)
 {
-	const struct expression *e = &s->expression[f->expression];
+	const struct switching_function *e = &s->function[f->function];
 	int interval = 1;
 	while (!is_stick(e, interval) || !mpq_equal(e->at[interval], f->at))
 		interval++;
@@ -115,7 +115,7 @@ static void slip(const struct switching *s, int index)
 		const struct friction *f = &s->friction[i];
 		if (f->segment != segment_of_region(s, index))
 			continue;
-		int side = interval_of(s, index, f->expression) - stick_of(s, f);
+		int side = interval_of(s, index, f->function) - stick_of(s, f);
 		mpq_set_si(sign, side < 0 ? -mpq_sgn(f->factor) : mpq_sgn(f->factor), 1);
 		if (side != 0) {
 			put_in(s, region, f, sign);
@@ -127,8 +127,8 @@ static void slip(const struct switching *s, int index)
 
 /* ---- constraints of what sticks ---- */
 
-struct stuck {                      /* one expression that is held, in one region */
-	int expression;
+struct stuck {                      /* one switching function that is held, in one region */
+	int function;
 	const struct atom *atom;    /* the first that acts; NULL: none does */
 	const struct impact *impact; /* that rests there; NULL: it is friction */
 	const struct impact_law *impact_law; /* the same in this segment of time */
@@ -168,14 +168,14 @@ static bool acts(const struct switching *s, const struct region *region, const s
 }
 
 /* Several of one velocity are one: their forces are multiples of one another, and so their parts of it. */
-static void find_direction(const struct switching *s, int index, int expression, struct stuck *stuck)
+static void find_direction(const struct switching *s, int index, int function, struct stuck *stuck)
 {
 	const struct region *region = &s->region[index];
 	RATIONAL ratio = ZERO;
 	for (int i = 0; i < s->frictions; i++) {
 		const struct friction *f = &s->friction[i];
-		if (f->segment != segment_of_region(s, index) || f->expression != expression ||
-		    stick_of(s, f) != interval_of(s, index, expression) || !acts(s, region, f))
+		if (f->segment != segment_of_region(s, index) || f->function != function ||
+		    stick_of(s, f) != interval_of(s, index, function) || !acts(s, region, f))
 			continue;
 		int at = f->atom->index;
 		if (!stuck->atom || region->force[stuck->atom->index]->terms == 0)
@@ -224,18 +224,18 @@ static struct place place_of_stuck(const struct stuck *stuck)
 
 static struct stuck *find_stuck(struct building *b, const struct switching *s, int index, int *count)
 {
-	struct stuck *stuck = ARRAY(struct stuck, s->expressions);
+	struct stuck *stuck = ARRAY(struct stuck, s->functions);
 	int segment = segment_of_region(s, index);
 	*count = 0;
-	for (int e = 0; e < s->expressions; e++) {
-		const struct expression *expression = &s->expression[e];
+	for (int e = 0; e < s->functions; e++) {
+		const struct switching_function *function = &s->function[e];
 		int interval = interval_of(s, index, e);
-		if (!is_stick(expression, interval))
+		if (!is_stick(function, interval))
 			continue;
 		struct stuck *new = &stuck[(*count)++];
-		*new = (struct stuck){ .expression = e, .direction = rationals(s->rows),
+		*new = (struct stuck){ .function = e, .direction = rationals(s->rows),
 				       .share = rationals(s->frictions), .pivot = -1 };
-		new->velocity = form_difference(form_in(expression, segment), form_constant(expression->at[interval]));
+		new->velocity = form_difference(form_in(function, segment), form_constant(function->at[interval]));
 		new->rate = rate_of_form(b, new->velocity);
 		int impact = impact_resting(s, segment, e, interval);
 		if (impact >= 0) {
@@ -364,10 +364,10 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 static void add_releases(const struct switching *s, int index, const struct stuck *stuck)
 {
 	struct region *region = &s->region[index];
-	int stride = s->expression[stuck->expression].stride;
+	int stride = s->function[stuck->function].stride;
 	const struct form *up = NEW(struct form), *down = up;
 	if (stuck->impact) {                    /* it presses, and does not pull */
-		add_release(region, stuck->expression, !stuck->impact_law->upward,
+		add_release(region, stuck->function, !stuck->impact_law->upward,
 			    form_difference(NEW(struct form), stuck->force));
 		return;
 	}
@@ -376,8 +376,8 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 		down = s->region[index - stride].rest[stuck->atom->index];
 	}
 	const struct form *force = stuck->atom ? stuck->force : stuck->rate;
-	add_release(region, stuck->expression, true, form_difference(force, up ? up : NEW(struct form)));
-	add_release(region, stuck->expression, false,
+	add_release(region, stuck->function, true, form_difference(force, up ? up : NEW(struct form)));
+	add_release(region, stuck->function, false,
 		    form_difference(form_difference(NEW(struct form), force), down ? down : NEW(struct form)));
 }
 
@@ -437,7 +437,7 @@ static void check_response(struct building *b, const struct switching *s, const 
 	const struct linear *system = &model->system;
 	int n = model->n;
 	mpq_t *inverse = inverse_of_leading(system);
-	const struct form *rate = rate_of_form(b, s->expression[f->expression].form);
+	const struct form *rate = rate_of_form(b, s->function[f->function].form);
 	RATIONAL answer = ZERO, part = ZERO;
 	for (int i = 0; i < n; i++) {
 		mpq_srcptr acts = factor_of_friction(b->segment_equations[f->segment].residual[i].form, f);

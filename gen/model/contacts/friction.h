@@ -44,8 +44,9 @@ bool same_friction(const struct region *a, const struct region *b); /* what stic
 bool has_slider(const struct building *b, const struct form *form, int coord);
 /* its equation gives the force that it bears */
 void resolve_sliders(struct building *b, struct segment_equations *segment_equations);
-/* Whether a guard of its own stands where the interval of an expression ends: what lets go a slider without mass */
-bool is_released(const struct region *region, int expression, bool upward);
+/* Whether a guard of its own stands where the interval of a switching function ends: what lets go a slider without mass
+ * */
+bool is_released(const struct region *region, int function, bool upward);
 struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
 bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
 /* Where it slides: as many as its force differs in regions */

@@ -39,7 +39,7 @@ void hold_state(struct holding *h, const struct form *v, int at)
 	region->hold[region->holds++].form = held;
 }
 
-void add_release(struct region *region, int expression, bool upward, struct form *form)
+void add_release(struct region *region, int function, bool upward, struct form *form)
 {
-	*MORE(region->release, region->releases) = (struct release){ expression, upward, form, NULL };
+	*MORE(region->release, region->releases) = (struct release){ function, upward, form, NULL };
 }

@@ -9,7 +9,7 @@
 
 const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
 void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
-void add_release(struct region *region, int expression, bool upward, struct form *form);
+void add_release(struct region *region, int function, bool upward, struct form *form);
 
 /* ---- slider.c: friction of what has no mass ---- */
 

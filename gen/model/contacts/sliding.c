@@ -23,7 +23,7 @@ static bool same_slide(const struct slide *a, const struct slide *b)
 {
 	bool same = true;
 	for (int i = 0; i < 2; i++)
-		same = same && a->expression[i] == b->expression[i] && a->upward[i] == b->upward[i] &&
+		same = same && a->function[i] == b->function[i] && a->upward[i] == b->upward[i] &&
 		       mpq_equal(a->at[i], b->at[i]);
 	return same;
 }
@@ -54,18 +54,18 @@ const char *slider_text(const struct switching *s, int index)
 	for (int k = 0; k < slides; k++) {
 		const char *where[2];
 		for (int i = 0; i < 2; i++)
-			where[i] = format("expression %d is %s %s", slide[k]->expression[i],
+			where[i] = format("switching function %d is %s %s", slide[k]->function[i],
 					  slide[k]->upward[i] ? "above" : "below", readable_text(slide[k]->at[i]));
 		text = format("%s%s where %s, or %s", text, k ? "; in other regions" : "", where[0], where[1]);
 	}
 	return text;
 }
 
-bool is_released(const struct region *region, int expression, bool upward)
+bool is_released(const struct region *region, int function, bool upward)
 {
 	bool any = false;
 	for (int k = 0; k < region->releases; k++)
-		any = any || (region->release[k].expression == expression && region->release[k].upward == upward);
+		any = any || (region->release[k].function == function && region->release[k].upward == upward);
 	return any;
 }
 
@@ -97,7 +97,7 @@ void slide_sliders(struct building *b, const struct switching *s, int index)
 			continue;
 		struct form *velocity = region->residual[row];
 		region->carried[slider->atom->index] = velocity;
-		add_release(region, slide->expression[side], !slide->upward[side],
+		add_release(region, slide->function[side], !slide->upward[side],
 			    way > 0 ? form_difference(NEW(struct form), velocity) : velocity);
 		region->residual[row] = rate_of_form(b, place_of(region, slider));
 	}

@@ -246,14 +246,14 @@ static const struct segment_equations *fixed_equations(const struct point_work *
 	struct building *b = point->b;
 	struct collector *c = &b->collector;
 	if (!fixes_lets(point))
-		return b->whole;
-	struct segment_equations *kept = b->whole;
+		return b->full;
+	struct segment_equations *kept = b->full;
 	c->fixings = point->fixings;
 	c->fixing = point->fixing;
-	collect_whole(b);
+	collect_full(b);
 	c->fixings = 0;
-	struct segment_equations *fixed = b->whole;
-	b->whole = kept;
+	struct segment_equations *fixed = b->full;
+	b->full = kept;
 	if (diagnostics_errors())
 		abandon();
 	return fixed;
@@ -321,7 +321,7 @@ static struct form *inputs_carried(struct building *b, const struct form *equati
 static struct form *remainder_of(struct building *b, const struct operator *operator, int row)
 {
 	const struct linear *system = &b->model->system;
-	const struct form *equation = b->whole->residual[row].form;
+	const struct form *equation = b->full->residual[row].form;
 	struct form *left = inputs_carried(b, equation);
 	if (!b->model->remainder.loads)
 		left = form_sum(left, b->time_left[row], true);
@@ -389,7 +389,7 @@ static void differentiate_left(void *context)
 	}
 }
 
-/* ---- waves that the remainder reads get load states, as loads do ---- */
+/* ---- forcing terms that the remainder reads get load states, as loads do ---- */
 
 struct visit {
 	bool *seen;                 /* per atom */
@@ -424,12 +424,12 @@ void visit_remainders(const struct model *model, void (*visit)(void *, const str
 		visit_form(&v, model->schedule.selector);
 }
 
-static void place_waves(void *context, const struct form *form)
+static void place_forcings(void *context, const struct form *form)
 {
 	struct building *b = context;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_WAVE && !is_polynomial(basis->wave))
+		if (basis->kind == BASIS_FORCING && !is_polynomial(basis->forcing))
 			place_loads(b, form_single(*basis, form->term[i].factor));
 	}
 }
@@ -550,7 +550,7 @@ void build_operators(struct building *b)
 {
 	struct model *model = b->model;
 	const struct fixed *schedule = chooses_operator(model->scheme) ? banked(b->spec) : NULL;
-	if (!b->whole || !statement_guard(check_schedule, b))
+	if (!b->full || !statement_guard(check_schedule, b))
 		return;
 	struct schedule_work work = { .b = b, .schedule = schedule, .operators = 1 };
 	bool good = true;
@@ -573,7 +573,7 @@ void build_operators(struct building *b)
 	}
 	if (scheme_row(model->scheme)->collocates)
 		statement_guard(differentiate_left, b);
-	visit_remainders(model, place_waves, b);
+	visit_remainders(model, place_forcings, b);
 	if (scheme_row(model->scheme)->modes)
 		split_remainder(b);
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The remainder, sorted: forces that are linear in coordinates and velocities with factors of time alone, waves,
- * other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of time.
+/* The remainder, sorted: forces that are linear in coordinates and velocities with factors of time alone, forcing
+ * terms, other forces of time alone, and the rest. All but the last are matrices and vectors, one for each function of
+ * time.
  */
 #include "model/building.h"
 #include "model/contacts/contacts.h"
@@ -11,7 +12,8 @@ struct split_work {
 	struct splitting *split;
 	int coord;                  /* in whose equation the term stands */
 	const struct basis *basis;  /* of time alone; */
-	const struct form *plain;   /* the same as a sum of waves; NULL: it is none, or not at all times the same */
+	/* the same as a sum of forcing terms; NULL: it is none, or not at all times the same */
+	const struct form *plain;
 };
 
 static mpq_t *zeros_if_none(mpq_t **matrix, size_t cells)
@@ -83,29 +85,29 @@ static void add_product(struct split_work *w, const struct atom *a, int k, mpq_s
 }
 
 /* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known.  What holds answers to it, too. */
-static bool is_wave(const struct split_work *w, const struct basis *basis)
+static bool is_forcing(const struct split_work *w, const struct basis *basis)
 {
-	return basis->kind == BASIS_WAVE && basis->power == 0 && !w->b->request->loads_left &&
+	return basis->kind == BASIS_FORCING && basis->power == 0 && !w->b->request->loads_left &&
 	       !has_contacts(w->b->model) &&
-	       (mpq_sgn(basis->wave->w) != 0 || mpq_sgn(basis->wave->a) != 0);
+	       (mpq_sgn(basis->forcing->w) != 0 || mpq_sgn(basis->forcing->a) != 0);
 }
 
-static void add_wave(struct split_work *w, const struct basis *basis, mpq_srcptr by)
+static void add_forcing(struct split_work *w, const struct basis *basis, mpq_srcptr by)
 {
 	struct splitting *s = w->split;
 	int k = 0, n = w->b->model->n;
-	while (k < s->waves && s->wave[k].wave != basis->wave)
+	while (k < s->forcings && s->forcing[k].forcing != basis->forcing)
 		k++;
-	if (k == s->waves) {
-		*MORE(s->wave, s->waves) = (struct wave_force){
-			basis->wave, { rationals(n), rationals(n) }
+	if (k == s->forcings) {
+		*MORE(s->forcing, s->forcings) = (struct forcing_force){
+			basis->forcing, { rationals(n), rationals(n) }
 		};
 	}
-	mpq_ptr entry = s->wave[k].force[basis->sine][w->coord];
+	mpq_ptr entry = s->forcing[k].force[basis->sine][w->coord];
 	mpq_add(entry, entry, by);
 }
 
-/* Products of waves are waves: exp(-t)*sin(5*t) */
+/* Products of forcing terms are forcing terms: exp(-t)*sin(5*t) */
 static void find_plain(void *context)
 {
 	struct split_work *w = context;
@@ -119,7 +121,7 @@ static void find_plain(void *context)
 		plain = plain && same_form(first, here);
 	}
 	for (int i = 0; i < first->terms; i++)
-		plain = plain && is_wave(w, &first->term[i].basis);
+		plain = plain && is_forcing(w, &first->term[i].basis);
 	w->plain = plain ? first : NULL;
 }
 
@@ -128,20 +130,20 @@ static const struct form *plain_form(struct split_work *w, const struct basis *b
 	w->basis = basis;
 	w->plain = NULL;
 	if (!basis->atom)
-		return is_wave(w, basis) ? form_unit(*basis) : NULL;
+		return is_forcing(w, basis) ? form_unit(*basis) : NULL;
 	if (!silent_guard(find_plain, w))
 		w->plain = NULL;
 	w->b->collector.interval = 0;
 	return w->plain;
 }
 
-static void add_waves(struct split_work *w, const struct form *plain, mpq_srcptr by)
+static void add_forcings(struct split_work *w, const struct form *plain, mpq_srcptr by)
 {
 	RATIONAL factor = ZERO;
 	place_loads(w->b, plain);
 	for (int i = 0; i < plain->terms; i++) {
 		mpq_mul(factor, by, plain->term[i].factor);
-		add_wave(w, &plain->term[i].basis, factor);
+		add_forcing(w, &plain->term[i].basis, factor);
 	}
 }
 
@@ -197,7 +199,7 @@ static void add_term(struct split_work *w, const struct form_term *term)
 	else if (k >= 0)
 		add_product(w, basis->atom, k, term->factor);
 	else if (depends_on_time_only(basis) && (plain = plain_form(w, basis)))
-		add_waves(w, plain, term->factor);
+		add_forcings(w, plain, term->factor);
 	else if (depends_on_time_only(basis))
 		add_force(w, basis, term->factor);
 	else

@@ -90,16 +90,16 @@ const char **layout_names(const struct layout *x, const struct linear *system, c
 /* (t^k e^{at} cos)' = k t^{k-1} e^{at} cos + a t^k e^{at} cos - w t^k e^{at} sin, and so for sin */
 static void fill_load_rows(mpq_t *A, int size, int at, const struct load *load)
 {
-	int trig = oscillates(load->wave) ? 2 : 1;
+	int trig = oscillates(load->forcing) ? 2 : 1;
 	for (int column = 0; column < load->columns; column++) {
 		mpq_t *row = A + (at + column) * size + at;
-		mpq_set(row[column], load->wave->a);
+		mpq_set(row[column], load->forcing->a);
 		if (column >= trig)
 			mpq_set_si(row[column - trig], column / trig, 1);
 		if (trig == 2 && column % 2 == 0)
-			mpq_neg(row[column + 1], load->wave->w);
+			mpq_neg(row[column + 1], load->forcing->w);
 		if (trig == 2 && column % 2 == 1)
-			mpq_set(row[column - 1], load->wave->w);
+			mpq_set(row[column - 1], load->forcing->w);
 	}
 }
 

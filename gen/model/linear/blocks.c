@@ -31,7 +31,7 @@ static void pick_equations(const void *context, const mpq_t *force, mpq_t *part)
 		mpq_set(part[i], force[b->equation[i]]);
 }
 
-static void number_states(const struct linear *whole, struct block *b)
+static void number_states(const struct linear *full, struct block *b)
 {
 	struct linear *system = &b->system;
 	size_t n = (size_t)system->n;
@@ -45,25 +45,25 @@ static void number_states(const struct linear *whole, struct block *b)
 		system->velocity[j] = -1;
 	}
 	for (int j = 0; j < system->n; j++) {
-		if (whole->velocity[b->coord[j]] < 0)
+		if (full->velocity[b->coord[j]] < 0)
 			continue;
 		system->velocity[j] = system->states;
 		system->coord[system->states] = j;
-		b->state[system->states++] = whole->velocity[b->coord[j]];
+		b->state[system->states++] = full->velocity[b->coord[j]];
 	}
 }
 
-static void restrict_system(const struct linear *whole, struct block *b)
+static void restrict_system(const struct linear *full, struct block *b)
 {
 	struct linear *system = &b->system;
-	int n = whole->n;
-	number_states(whole, b);
-	system->M = submatrix(whole->M, n, b);
-	system->C = submatrix(whole->C, n, b);
-	system->K = submatrix(whole->K, n, b);
-	system->heldC = submatrix(whole->heldC, n, b);
-	system->heldK = submatrix(whole->heldK, n, b);
-	take_forces(system, whole, system->n, pick_equations, b);
+	int n = full->n;
+	number_states(full, b);
+	system->M = submatrix(full->M, n, b);
+	system->C = submatrix(full->C, n, b);
+	system->K = submatrix(full->K, n, b);
+	system->heldC = submatrix(full->heldC, n, b);
+	system->heldK = submatrix(full->heldK, n, b);
+	take_forces(system, full, system->n, pick_equations, b);
 }
 
 struct block block_at(const struct linear *system, int *parent, int coord)

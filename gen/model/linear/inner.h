@@ -8,7 +8,7 @@
 
 struct relative *relative_new(const struct model *model);    /* without a link */
 void complete_relative(struct relative *r);                  /* once it is linked: names, orders and forms */
-struct relative *relative_of(const struct model *model);     /* NULL: nothing moves as a whole that has parts */
+struct relative *relative_of(const struct model *model);     /* NULL: no rigid-body mode has several coordinates */
 
 /* ---- modes.c, participation.c: the modes of a linear model, and what each of them gives to the outputs ---- */
 

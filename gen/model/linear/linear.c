@@ -234,7 +234,7 @@ bool is_driven(const struct linear *system)
 bool is_constant_column(const struct linear *system, int column)
 {
 	for (int l = 0; l < system->loads && column >= 0; column -= system->load[l++].columns)
-		if (column == 0 && is_polynomial(system->load[l].wave))
+		if (column == 0 && is_polynomial(system->load[l].forcing))
 			return true;
 	return false;
 }

@@ -14,8 +14,8 @@ struct segment_equations;
 
 /* ---- linear.c: linear systems of coordinates ---- */
 
-struct load {                       /* force on the equations: t^k times one wave */
-	const struct wave *wave;
+struct load {                       /* force on the equations: t^k times one forcing term */
+	const struct forcing *forcing;
 	int powers;                 /* k = 0 .. powers-1 */
 	int columns;                /* t^k, or t^k cos and t^k sin: the load states z */
 	mpq_t **force;              /* per column: [segment][equation] */
@@ -45,7 +45,7 @@ struct equations {                  /* as they are written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
 	struct segment_equations *segment_equations; /* per segment */
 	/* for all time, conditions and products of time kept; NULL: there is no remainder */
-	struct segment_equations *whole;
+	struct segment_equations *full;
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
 	const struct atoms *atoms;

@@ -117,7 +117,7 @@ static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_
 
 static mpq_srcptr frequency_of(const struct load *load)
 {
-	return oscillates(load->wave) ? load->wave->w : NULL;
+	return oscillates(load->forcing) ? load->forcing->w : NULL;
 }
 
 static void follow_load(const struct following *f, int l, int segment)
@@ -127,7 +127,7 @@ static void follow_load(const struct following *f, int l, int segment)
 	const int k = f->mode->states;
 	const size_t cells = (size_t)load->columns * (size_t)k;
 	RATIONALS *x = rationals(cells);
-	const mpq_t *inverse = shifted_inverse(k, f->mode->block, load->wave->a, frequency_of(load));
+	const mpq_t *inverse = shifted_inverse(k, f->mode->block, load->forcing->a, frequency_of(load));
 	for (int c = 0; c < load->columns && inverse; c++) {
 		RATIONALS *slopes = slopes_by_force(system, f->inverse, load->force[c] + segment * system->n);
 		drive(f->modes, f->mode, slopes, x + c * k);
@@ -329,7 +329,7 @@ struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_c
 	return error;
 }
 
-double modes_loss(const struct modes *modes, const bool *kept, bool static_correction, int output)
+double truncation_of_modes(const struct modes *modes, const bool *kept, bool static_correction, int output)
 {
 	double sum = 0;
 	for (int i = 0; i < modes->count; i++)
@@ -349,7 +349,7 @@ static void put_modes(struct modes *modes, bool *kept, const struct wanted_modes
 		rigid += mode->rigid && mode->seen ? mode->weight : 0;
 	}
 	if (rigid > wanted->number[0])
-		error(wanted->at, "what moves as a whole is never dropped where an output sees it",
+		error(wanted->at, "a rigid-body mode is never dropped where an output sees it",
 		      "%d rigid mode%s seen by the outputs: no fewer can be kept", rigid,
 		      rigid > 1 ? "s are" : " is");
 	for (int i = 0; i < modes->count && count < wanted->number[0]; i++) {
@@ -385,7 +385,7 @@ static void put_listed(struct modes *modes, bool *kept, const struct wanted_mode
 	}
 	for (int i = 0; i < modes->count; i++)
 		if (modes->mode[i].rigid && modes->mode[i].seen && !kept[i])
-			error(wanted->at, "what moves as a whole is never dropped where an output sees it",
+			error(wanted->at, "a rigid-body mode is never dropped where an output sees it",
 			      "mode %d is rigid and seen by an output: it has to be kept", modes->mode[i].number);
 }
 

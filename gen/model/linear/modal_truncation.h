@@ -15,7 +15,7 @@ bool same_reduction(const struct model *a, const struct model *b);
 
 /* A mode is an invariant part of y' = A y that is real and as small as it can be: z = left y, z' = block z + left b u,
  * and right z is its share of y; left right = 1. It has the two states of a pair of poles, or the one of a real pole;
- * more where poles coincide or nearly do, as those of repeated frequencies and of what moves as a whole. Where M^-1 K
+ * more where poles coincide or nearly do, as those of repeated frequencies and of rigid-body modes. Where M^-1 K
  * and M^-1 C share their modes (proportional damping, none) z is a coordinate and its velocity, z = (m, m'). */
 struct mode {
 	int number;                 /* by rising size of its poles, from 1; of several coordinates: the first's */
@@ -81,7 +81,7 @@ struct model *modes_kept(struct modes *modes, const bool *kept, bool static_corr
 struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_correction);
 /* The largest that output can lose by what is dropped, from the start and by loads, at any time; HUGE_VAL: no bound.
  * In double precision. */
-double modes_loss(const struct modes *modes, const bool *kept, bool static_correction, int output);
+double truncation_of_modes(const struct modes *modes, const bool *kept, bool static_correction, int output);
 /* What the statement `modes` or --modes asks for; the model itself where neither does. NULL: it was said why not */
 struct model *model_truncate(struct model *model);
 

@@ -189,8 +189,8 @@ static void drive(const struct participation *s, const struct picture *p, const 
  * down, (a - i w - T) P = B - (j+1) P'. False: it has a pole of the mode. */
 static bool forced(const struct picture *p, const struct load *load, const double *B, double *P)
 {
-	const int k = p->k, trig = oscillates(load->wave) ? 2 : 1, size = trig * k;
-	const double complex rate = nearest_double(load->wave->a) - I * nearest_double(load->wave->w);
+	const int k = p->k, trig = oscillates(load->forcing) ? 2 : 1, size = trig * k;
+	const double complex rate = nearest_double(load->forcing->a) - I * nearest_double(load->forcing->w);
 	SCRATCH double complex *F = ARRAY(double complex, (size_t)k * (size_t)k), *x = ARRAY(double complex, k);
 	bool good = true;
 	for (int power = load->powers - 1; power >= 0 && good; power--) {
@@ -210,9 +210,9 @@ static bool forced(const struct picture *p, const struct load *load, const doubl
 /* The values of a load's columns at a time */
 static void load_at(const struct load *load, double t, double *q)
 {
-	const double e = exp(nearest_double(load->wave->a) * t);
-	const double angle = nearest_double(load->wave->w) * t + nearest_double(load->wave->p);
-	const int trig = oscillates(load->wave) ? 2 : 1;
+	const double e = exp(nearest_double(load->forcing->a) * t);
+	const double angle = nearest_double(load->forcing->w) * t + nearest_double(load->forcing->p);
+	const int trig = oscillates(load->forcing) ? 2 : 1;
 	for (int c = 0; c < load->columns; c++)
 		q[c] = pow(t, c / trig) * e * (trig == 1 ? 1 : c % 2 == 0 ? cos(angle) : sin(angle));
 }
@@ -220,8 +220,8 @@ static void load_at(const struct load *load, double t, double *q)
 /* The largest |c P q| in a segment that ends at `end`; HUGE_VAL: no bound */
 static double forced_peak(const struct picture *p, const struct load *load, const double *P, double end)
 {
-	const int k = p->k, trig = oscillates(load->wave) ? 2 : 1;
-	const double a = nearest_double(load->wave->a);
+	const int k = p->k, trig = oscillates(load->forcing) ? 2 : 1;
+	const double a = nearest_double(load->forcing->a);
 	double sum = 0;
 	for (int power = 0; power < load->powers; power++) {
 		const double *x = P + power * trig * k;

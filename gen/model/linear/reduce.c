@@ -102,7 +102,7 @@ static void sort_rows(struct observable *o)
 /* ---- rows to see ---- */
 
 /* Of an output that is not linear: every state that its expression names */
-static void see_expression(struct observable *o, const struct model *model, const struct form *form)
+static void see_function(struct observable *o, const struct model *model, const struct form *form)
 {
 	struct reads reads = reads_of(model, 1, &form);
 	for (int i = 0; i < model->system.states; i++) {
@@ -123,7 +123,7 @@ static struct observable observe(const struct model *model)
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
 		if (output->left)
-			see_expression(&o, model, output->left);
+			see_function(&o, model, output->left);
 		if (output->form || !output->value)
 			add_row(&o, output->state);
 	}
@@ -244,7 +244,7 @@ static void place_states(const struct observable *o, struct model *reduced)
 
 struct model *model_reduce(struct model *model)
 {
-	if (!model->asked.reduce)
+	if (!model->request.reduce)
 		return model;
 	struct observable o = observe(model);
 	model->reduction.irreducible = o.rank == model->system.states;

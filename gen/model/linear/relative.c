@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coordinates in which what may move as a whole is parted from what moves in it. A drive that turns, a train that
+/* Coordinates in which rigid-body modes are parted from relative motion. A drive that turns, a train that
  * rolls: positions grow without bound while forces depend on their differences only, and a difference of two large
  * numbers has lost its digits. So where the equations do not change when coordinates are moved by n, the step keeps
  * x_k - (n_k/n_p) x_p of each coordinate and its neighbour in a tree, beside one coordinate that alone is moved.
@@ -385,7 +385,7 @@ static bool make_group(const struct dependences *l, const mpq_t *motion, mpq_t *
 		return true;
 	if (model->schedule.operators > 0 && !scheme_row(model->scheme)->holds_coupling)
 		say_warning(model->spec->operators.at, "fix all of them, or none",
-			    "the operator fixes some of the coordinates that may move as a whole: they are kept as "
+			    "the operator fixes some of the coordinates of a rigid-body mode: they are kept as "
 			    "written, and where they grow their differences lose digits");
 	return false;
 }

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Coordinates in which what may move as a whole is parted from what moves in it. */
+/* Coordinates in which rigid-body modes are parted from relative motion. */
 #ifndef PLGEN_MODEL_RELATIVE_H
 #define PLGEN_MODEL_RELATIVE_H
 
 #include "model/model.h"
 
-/* ---- relative.c: coordinates in which what may move as a whole is parted from what moves in it ---- */
+/* ---- relative.c: coordinates in which rigid-body modes are parted from relative motion ---- */
 
 struct link {                       /* of a written coordinate x: what is kept in its place */
 	/* x itself; its distance from another; the centre of its group */

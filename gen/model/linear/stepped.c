@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which model is stepped: that of the equations, or one over coordinates that part what moves as a whole. */
+/* Which model is stepped: that of the equations, or one over rigid-body and relative coordinates. */
 #include "inner.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
@@ -12,7 +12,7 @@ static int root_of(const struct relative *r, int coord)
 	return coord;
 }
 
-/* The coordinates kept from `first` on that move as a whole with it; NULL: there are no others */
+/* The coordinates kept from `first` on that share its rigid-body mode; NULL: there are no others */
 static const char *kept_with(const struct model *model, const struct relative *r, int first)
 {
 	const char *names = model->written->names.coord[first];
@@ -26,7 +26,7 @@ static const char *kept_with(const struct model *model, const struct relative *r
 	return count > 1 ? names : NULL;
 }
 
-/* Positions that a reduced model keeps as they are written, though they may move as a whole */
+/* Positions that a reduced model keeps as they are written, though they have rigid-body modes */
 static void warn_of_kept(const struct model *model)
 {
 	const struct relative *r = relative_of(model->written);
@@ -35,8 +35,8 @@ static void warn_of_kept(const struct model *model)
 		names = kept_with(model, r, i);
 	if (names)
 		say_warning(model->spec->name_at, "without --reduce differences are states of their own",
-			    "the reduced model keeps %s, which may move as a whole: where they grow, their differences "
-			    "lose digits",
+			    "the reduced model keeps %s, which have rigid-body modes: where they grow, their "
+			    "differences lose digits",
 			    names);
 }
 
@@ -47,10 +47,10 @@ static struct model *undivided(struct model *model, struct spec *spec, struct re
 	if (!model->switching || !model->switching->parts)
 		return model;
 	again->again.undivided = true;
-	struct model *whole = model_build(spec, again);
-	if (whole)
-		whole->switching->sharing = model->switching->parts;
-	return whole;
+	struct model *full = model_build(spec, again);
+	if (full)
+		full->switching->sharing = model->switching->parts;
+	return full;
 }
 
 static struct model *model_over_differences(struct model *model, struct spec *spec, struct request *again)
@@ -67,7 +67,7 @@ static struct model *model_over_differences(struct model *model, struct spec *sp
 	return relative;
 }
 
-/* The model over coordinates that part what moves as a whole from what moves in it; itself, where nothing does */
+/* The model over coordinates that part rigid-body modes from relative motion; itself, where there are none */
 struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request)
 {
 	struct request again = *request;
@@ -79,11 +79,11 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 		return model;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	if (row->holds_coupling || row->modes) {
-		say_warning(model->asked.scheme_at.source ? model->asked.scheme_at : spec->name_at,
+		say_warning(model->request.scheme_at.source ? model->request.scheme_at : spec->name_at,
 			    row->modes ? "exact and etdrk4 step differences as states of their own"
 				       : "any other scheme steps differences as states of their own",
-			    "%s keeps coordinates as they are written, and some may move as a whole: where they grow, "
-			    "their differences lose digits", scheme_name(model->scheme));
+			    "%s keeps coordinates as they are written, and there are rigid-body modes: where they "
+			    "grow, their differences lose digits", scheme_name(model->scheme));
 		return model;
 	}
 	again.reduce = again.reduce && !model->reduction.irreducible;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether a scheme that leaves something over goes from crossing to crossing: each comparison of the remainder is
- * of an expression of the state with a breakpoint, or of times, the formulas on both sides have derivatives there, and
- * the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else it steps
- * across, and is of the order that is left there. */
+ * of a switching function of the state with a breakpoint, or of times, the formulas on both sides have derivatives
+ * there, and the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else
+ * it steps across, and is of the order that is left there. */
 #include "model/capability.h"
 #include "model/contacts/contacts.h"
 
@@ -102,7 +102,7 @@ static void follow_form(struct following *f, const struct form *form)
 }
 
 /* What stands against parts of a step, made by the target */
-static bool is_whole(const struct model *model)
+static bool is_full(const struct model *model)
 {
 	const struct facts facts = facts_of_model(model);
 	return objection_to(CAN_SPLIT, &facts, model).why != NULL;
@@ -110,7 +110,7 @@ static bool is_whole(const struct model *model)
 
 bool follows_crossings(const struct model *model)
 {
-	if (is_whole(model))
+	if (is_full(model))
 		return false;
 	if (has_contacts(model))
 		return true;

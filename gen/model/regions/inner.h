@@ -3,17 +3,17 @@
 #ifndef PLGEN_MODEL_REGIONS_INNER_H
 #define PLGEN_MODEL_REGIONS_INNER_H
 
-#include "expressions.h"
+#include "switching_functions.h"
 #include "regions.h"
 
-/* ---- expressions.c: what is compared with breakpoints ---- */
+/* ---- switching_functions.c: what is compared with breakpoints ---- */
 
-/* The expression that form is a multiple of in this segment of time; met for the first time it is one, with the sign
- * and scale in which it was written, and form is its own. form + constant = of (e - at) */
-int  find_expression(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
+/* The switching function that form is a multiple of in this segment of time; met for the first time it is one, with the
+ * sign and scale in which it was written, and form is its own. form + constant = of (e - at) */
+int  find_switching_function(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
-void complete_expressions(struct switching *s);
-bool share_expression(const struct switching *a, const struct switching *b);
+void complete_switching_functions(struct switching *s);
+bool share_function(const struct switching *a, const struct switching *b);
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
@@ -22,7 +22,7 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
 /* its index; apart: with no other's, though they are equal */
 int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
-int  count_candidates(struct switching *s);                 /* in one segment of time; strides of expressions */
+int  count_candidates(struct switching *s);                 /* in one segment of time; strides of switching functions */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
 _Noreturn void too_many(const struct building *b, const struct switching *s);

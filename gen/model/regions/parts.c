@@ -71,7 +71,7 @@ static bool unite_sharing(struct parting *p)
 	int n = p->b->model->n;
 	for (int i = 0; i < n; i++)
 		for (int j = i + 1; j < n; j++)
-			if (p->of[i] && p->of[j] && share_expression(p->of[i], p->of[j])) {
+			if (p->of[i] && p->of[j] && share_function(p->of[i], p->of[j])) {
 				unite(p, i, j);
 				return true;
 			}
@@ -82,7 +82,7 @@ static void unite_linear(struct parting *p)
 {
 	int first = -1;
 	for (int j = 0; j < p->b->model->n; j++) {
-		if (!p->of[j] || p->of[j]->expressions > 0)
+		if (!p->of[j] || p->of[j]->functions > 0)
 			continue;
 		if (first >= 0)
 			unite(p, first, j);
@@ -93,43 +93,43 @@ static void unite_linear(struct parting *p)
 
 /* ---- the whole of them ---- */
 
-static int expressions_of_parts(const struct switching *s)
+static int functions_of_parts(const struct switching *s)
 {
 	int count = 0;
 	for (int p = 0; p < s->parts; p++)
-		count += s->part[p].model->switching->expressions;
+		count += s->part[p].model->switching->functions;
 	return count;
 }
 
 /* The next of all parts in the order in which they were met; *of: whose it is. next: per part, of it */
-static int next_expression(const struct switching *s, const int *next)
+static int next_function(const struct switching *s, const int *next)
 {
 	int of = -1;
 	for (int p = 0; p < s->parts; p++) {
 		const struct switching *own = s->part[p].model->switching;
-		if (next[p] == own->expressions)
+		if (next[p] == own->functions)
 			continue;
-		if (of < 0 || own->expression[next[p]].met < s->part[of].model->switching->expression[next[of]].met)
+		if (of < 0 || own->function[next[p]].met < s->part[of].model->switching->function[next[of]].met)
 			of = p;
 	}
 	return of;
 }
 
-/* Numbers the expressions of all parts, and the regions that they make together. */
-static void number_expressions(struct switching *s)
+/* Numbers the switching functions of all parts, and the regions that they make together. */
+static void number_switching_functions(struct switching *s)
 {
 	int *next = ARRAY(int, s->parts);
 	long regions = 1;
-	s->expressions = expressions_of_parts(s);
-	s->expression = ARRAY(struct expression, s->expressions);
+	s->functions = functions_of_parts(s);
+	s->function = ARRAY(struct switching_function, s->functions);
 	for (int p = 0; p < s->parts; p++)
-		s->part[p].expression = ARRAY(int, s->part[p].model->switching->expressions);
-	for (int i = 0; i < s->expressions; i++) {
-		int of = next_expression(s, next);
-		const struct expression *e = &s->part[of].model->switching->expression[next[of]];
-		s->expression[i] = *e;
-		s->expression[i].stride = (int)regions;
-		s->part[of].expression[next[of]++] = i;
+		s->part[p].function = ARRAY(int, s->part[p].model->switching->functions);
+	for (int i = 0; i < s->functions; i++) {
+		int of = next_function(s, next);
+		const struct switching_function *e = &s->part[of].model->switching->function[next[of]];
+		s->function[i] = *e;
+		s->function[i].stride = (int)regions;
+		s->part[of].function[next[of]++] = i;
 		regions *= e->breaks + 1;
 		if (regions > INT_MAX)
 			error(e->node->at, "a scheme with a remainder, such as etdrk4, needs no regions",
@@ -152,7 +152,7 @@ static struct switching *regions_of_parts(struct building *b)
 	find_components(&p);
 	for (int linear = 0; linear < 2; linear++)      /* the linear part comes last */
 		for (int j = 0; j < b->model->n; j++) {
-			if (!p.of[j] || (p.of[j]->expressions == 0) != linear)
+			if (!p.of[j] || (p.of[j]->functions == 0) != linear)
 				continue;
 			struct region_part *part = &s->part[s->parts++];
 			*part = (struct region_part){ .coord = j, .model = NEW(struct model) };
@@ -160,16 +160,16 @@ static struct switching *regions_of_parts(struct building *b)
 		}
 	if (s->parts < 2)
 		return NULL;
-	number_expressions(s);
+	number_switching_functions(s);
 	return s;
 }
 
-int share_of_region(const struct region_part *part, const struct switching *whole, int region)
+int share_of_region(const struct region_part *part, const struct switching *full, int region)
 {
 	const struct switching *s = part->model->switching;
 	int share = 0;
-	for (int i = 0; i < s->expressions; i++)
-		share += interval_of(s, region, i) * whole->expression[part->expression[i]].stride;
+	for (int i = 0; i < s->functions; i++)
+		share += interval_of(s, region, i) * full->function[part->function[i]].stride;
 	return share;
 }
 
@@ -208,9 +208,9 @@ static void place_loads_of(struct building *b, const struct switching *s)
 			if (region->carried[s->slider[k].atom->index])
 				place_loads(b, region->carried[s->slider[k].atom->index]);
 	}
-	for (int e = 0; e < s->expressions; e++)
+	for (int e = 0; e < s->functions; e++)
 		for (int segment = 0; segment < s->segments; segment++)
-			place_loads(b, form_in(&s->expression[e], segment));
+			place_loads(b, form_in(&s->function[e], segment));
 	place_impact_loads(b, s);
 }
 
@@ -252,9 +252,9 @@ static void find_inputs(struct region_part *part)
 		for (int k = 0; k < 2 * s->systems; k++)
 			needed = needed ||
 				 !rationals_zero((size_t)s->system->n, s->system[k / 2].input[i].force[k % 2]);
-		for (int e = 0; e < s->expressions; e++)
+		for (int e = 0; e < s->functions; e++)
 			for (int k = 0; k < 2; k++)
-				needed = needed || mpq_sgn(s->expression[e].row->input[k][i]) != 0;
+				needed = needed || mpq_sgn(s->function[e].row->input[k][i]) != 0;
 		if (needed)
 			part->input[part->model->system.inputs++] = i;
 	}
@@ -290,10 +290,10 @@ static struct output *own_row(const struct region_part *part, const struct outpu
 
 static void take_model(struct building *b, struct region_part *part, const struct block *block)
 {
-	const struct model *whole = b->model;
+	const struct model *full = b->model;
 	struct model *model = part->model;
 	struct switching *s = model->switching;
-	*model = *whole;
+	*model = *full;
 	model->switching = s;
 	model->written = model;
 	model->n = block->system.n;
@@ -303,9 +303,9 @@ static void take_model(struct building *b, struct region_part *part, const struc
 	model->names.coord = ARRAY(const char *, model->n);
 	model->names.state = ARRAY(const char *, model->system.states);
 	for (int i = 0; i < model->n; i++)
-		model->names.coord[i] = whole->names.coord[block->coord[i]];
+		model->names.coord[i] = full->names.coord[block->coord[i]];
 	for (int i = 0; i < model->system.states; i++)
-		model->names.state[i] = whole->names.state[block->state[i]];
+		model->names.state[i] = full->names.state[block->state[i]];
 	part->state = block->state;
 }
 
@@ -317,16 +317,16 @@ static void build_part(struct building *b, int *parent, struct region_part *part
 	for (int r = 0; r < s->regions; r++) {
 		if (!s->region[r].possible)
 			continue;
-		struct linear whole = system_in_region(b, s, r);
-		struct block own = block_at(&whole, parent, part->coord);
+		struct linear full = system_in_region(b, s, r);
+		struct block own = block_at(&full, parent, part->coord);
 		s->region[r].system = add_system(s, &own.system, segment_of_region(s, r), false);
 	}
 	remove_idle_breaks(s);
-	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = row_of_expression(b, s, &s->expression[e]);
+	for (int e = 0; e < s->functions; e++)
+		s->function[e].row = row_of_function(b, s, &s->function[e]);
 	find_inputs(part);
-	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = own_row(part, s->expression[e].row);
+	for (int e = 0; e < s->functions; e++)
+		s->function[e].row = own_row(part, s->function[e].row);
 	for (int k = 0; k < s->systems; k++)
 		take_inputs(part, &s->system[k]);
 	part->model->system = s->system[0];
@@ -364,10 +364,10 @@ static void build_all_parts(struct building *b, struct switching *s)
 	for (int p = 0; p < s->parts; p++)
 		build_part(b, parent, &s->part[p]);
 	fill_first_regions(b, s);
-	number_expressions(s);
+	number_switching_functions(s);
 }
 
-static void build_whole(struct building *b, struct switching *s)
+static void build_full(struct building *b, struct switching *s)
 {
 	for (int r = 0; r < s->regions; r++) {
 		if (!s->region[r].possible)
@@ -385,7 +385,7 @@ static void build_whole(struct building *b, struct switching *s)
 void build_regions(struct building *b)
 {
 	struct switching *s = b->model->switching;
-	(s->parts ? build_all_parts : build_whole)(b, s);
-	for (int e = 0; e < s->expressions; e++)
-		s->expression[e].row = row_of_expression(b, s, &s->expression[e]);
+	(s->parts ? build_all_parts : build_full)(b, s);
+	for (int e = 0; e < s->functions; e++)
+		s->function[e].row = row_of_function(b, s, &s->function[e]);
 }

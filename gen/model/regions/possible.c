@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which regions can be: inequalities of their expressions that hold together, by elimination (Fourier and Motzkin).
- * Whether forces jump with a velocity from one to the next. */
+/* Which regions can be: inequalities of their switching functions that hold together, by elimination (Fourier and
+ * Motzkin). Whether forces jump with a velocity from one to the next. */
 #include "inner.h"
 #include "model/building.h"
 #include "model/contacts/contacts.h"
@@ -8,7 +8,7 @@
 
 static const struct node *last_term(const struct switching *s)
 {
-	return s->expression[s->expressions - 1].node;
+	return s->function[s->functions - 1].node;
 }
 
 _Noreturn void too_many_in_time(const struct switching *s)
@@ -25,7 +25,7 @@ _Noreturn void too_many(const struct building *b, const struct switching *s)
 	if (has_events(s))
 		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
 	else if (together)
-		hint = "some coordinates move as a whole, and then independent parts have their regions together; a "
+		hint = "there are rigid-body modes, and then independent parts have their regions together; a "
 		       "scheme with a remainder, such as etdrk4, needs no regions";
 	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
 }
@@ -75,14 +75,14 @@ static bool can_hold(struct inequalities set)
 	return true;
 }
 
-/* The bases that expressions are made of, as variables */
+/* The bases that switching functions are made of, as variables */
 static int find_bases(const struct switching *s, int segment, struct basis **basis)
 {
 	int count = 0;
 	*basis = NULL;
-	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].in[segment]->terms; k++) {
-			const struct basis *found = &s->expression[i].in[segment]->term[k].basis;
+	for (int i = 0; i < s->functions; i++)
+		for (int k = 0; k < s->function[i].in[segment]->terms; k++) {
+			const struct basis *found = &s->function[i].in[segment]->term[k].basis;
 			bool known = false;
 			for (int j = 0; j < count; j++)
 				known = known || basis_order(&(*basis)[j], found) == 0;
@@ -93,7 +93,8 @@ static int find_bases(const struct switching *s, int segment, struct basis **bas
 	return count;
 }
 
-static mpq_t *bound_row(const struct expression *e, int segment, int bases, const struct basis *basis, mpq_srcptr at,
+static mpq_t *bound_row(const struct switching_function *e, int segment, int bases, const struct basis *basis,
+			mpq_srcptr at,
 			bool below)
 {
 	mpq_t *a = rationals(bases + 1);
@@ -111,8 +112,8 @@ static mpq_t *bound_row(const struct expression *e, int segment, int bases, cons
 static bool is_possible(const struct switching *s, int region, int bases, const struct basis *basis)
 {
 	struct inequalities set = { bases, 0, NULL };
-	for (int i = 0; i < s->expressions; i++) {
-		const struct expression *e = &s->expression[i];
+	for (int i = 0; i < s->functions; i++) {
+		const struct switching_function *e = &s->function[i];
 		int interval = interval_of(s, region, i), segment = segment_of_region(s, region);
 		if (is_stick(e, interval))
 			continue;
@@ -127,17 +128,17 @@ static bool is_possible(const struct switching *s, int region, int bases, const 
 /* Expressions of which each has a basis of its own are independent: then every region can be. */
 static bool independent(const struct switching *s, int segment)
 {
-	for (int i = 0; i < s->expressions; i++) {
+	for (int i = 0; i < s->functions; i++) {
 		bool own = false;
-		const struct form *form = s->expression[i].in[segment];
+		const struct form *form = s->function[i].in[segment];
 		for (int k = 0; k < form->terms && !own; k++) {
 			own = true;
-			for (int j = 0; j < s->expressions; j++)
-				for (int m = 0; m < s->expression[j].in[segment]->terms; m++)
+			for (int j = 0; j < s->functions; j++)
+				for (int m = 0; m < s->function[j].in[segment]->terms; m++)
 					own = own &&
 					      (i == j ||
 					       basis_order(&form->term[k].basis,
-							   &s->expression[j].in[segment]->term[m].basis) != 0);
+							   &s->function[j].in[segment]->term[m].basis) != 0);
 		}
 		if (!own)
 			return false;
@@ -159,7 +160,7 @@ void mark_possible(const struct building *b, struct switching *s)
 		in_all += count;
 		if (count > LIMIT_REGIONS)
 			too_many(b, s);
-		if (s->segments > 1 && s->expressions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
+		if (s->segments > 1 && s->functions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
 			too_many_in_time(s);
 	}
 }
@@ -167,7 +168,7 @@ void mark_possible(const struct building *b, struct switching *s)
 /* ---- what cannot be treated: forces that jump with a velocity ---- */
 
 /* Is the form a multiple of e - at, so that it vanishes on the breakpoint? */
-static bool vanishes_on(struct collector *c, const struct form *form, const struct expression *e, int segment,
+static bool vanishes_on(struct collector *c, const struct form *form, const struct switching_function *e, int segment,
 			mpq_srcptr at)
 {
 	const struct form *here = e->in[segment];
@@ -185,11 +186,11 @@ static bool vanishes_on(struct collector *c, const struct form *form, const stru
 	return gone;
 }
 
-static void check_face(struct building *b, const struct switching *s, int below, int expression)
+static void check_face(struct building *b, const struct switching *s, int below, int function)
 {
-	const struct expression *e = &s->expression[expression];
+	const struct switching_function *e = &s->function[function];
 	const struct region *low = &s->region[below], *high = &s->region[below + e->stride];
-	mpq_srcptr at = e->at[interval_of(s, below, expression)];
+	mpq_srcptr at = e->at[interval_of(s, below, function)];
 	for (int k = 0; k < s->rows; k++) {
 		int i = s->row[k];
 		const struct form *jump = form_sum(high->residual[i], low->residual[i], true);
@@ -201,9 +202,9 @@ static void check_face(struct building *b, const struct switching *s, int below,
 
 void check_jumps(struct building *b, const struct switching *s)
 {
-	for (int e = 0; e < s->expressions; e++)
-		for (int r = 0; r < s->regions && reads_velocity(b->model, s->expression[e].form); r++)
-			if (interval_of(s, r, e) < s->expression[e].breaks && s->region[r].possible &&
-			    s->region[r + s->expression[e].stride].possible)
+	for (int e = 0; e < s->functions; e++)
+		for (int r = 0; r < s->regions && reads_velocity(b->model, s->function[e].form); r++)
+			if (interval_of(s, r, e) < s->function[e].breaks && s->region[r].possible &&
+			    s->region[r + s->function[e].stride].possible)
 				check_face(b, s, r, e);
 }

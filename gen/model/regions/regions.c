@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of expressions that are linear
- * in states, known loads and inputs. Each comparison is of one expression with one breakpoint; the breakpoints of an
- * expression divide it into intervals; a region is one interval for each expression, and in it every equation is
- * linear. Expressions are found by looking at one region after the other, as breakpoints in time are. */
+/* Piecewise-linear equations: deadzone, clip, table, abs, sgn, min, max and conditions, of switching functions that are
+ * linear in states, known loads and inputs. Each comparison is of one switching function with one breakpoint; the
+ * breakpoints of a switching function divide it into intervals; a region is one interval for each switching function,
+ * and in it every equation is linear. Expressions are found by looking at one region after the other, as breakpoints in
+ * time are. */
 #include "inner.h"
 #include "model/building.h"
 #include "model/contacts/friction.h"
@@ -16,15 +17,15 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
-	bool divided = segments == 1 || b->model->contacts.impacts > 0;
+	bool switches = segments == 1 || b->model->contacts.impacts > 0;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
 			const struct form *form = b->segment_equations[s].residual[i].form;
 			if (!is_piecewise_form(form))
 				return false;
-			divided = divided || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
+			switches = switches || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
 		}
-	return divided;
+	return switches;
 }
 
 /* ---- a form in one region ---- */
@@ -32,13 +33,13 @@ bool is_piecewise_linear(const struct building *b)
 struct looking {
 	struct building *b;
 	struct switching *s;
-	const int *interval;        /* per expression */
+	const int *interval;        /* per switching function */
 	struct form **known;        /* per atom */
 	int count;
-	bool grown;                 /* an expression or a breakpoint was met for the first time: look again */
+	bool grown;                 /* a switching function or a breakpoint was met for the first time: look again */
 	int region, row;            /* where it looks */
 	int segment;                /* of time */
-	int lowest;                 /* of the regions, where there is one expression, that a new breakpoint divides */
+	int lowest; /* of the regions, where there is one switching function, that a new breakpoint divides */
 };
 
 int possible_regions(const struct switching *s)
@@ -51,7 +52,7 @@ int possible_regions(const struct switching *s)
 	return count;
 }
 
-static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
+static void add_break(struct looking *l, struct switching_function *e, mpq_srcptr at)
 {
 	mpq_t *breaks = rationals(e->breaks + 1);
 	int below = 0;
@@ -70,7 +71,7 @@ static void add_break(struct looking *l, struct expression *e, mpq_srcptr at)
  * counts as below it. */
 static bool is_above(struct looking *l, int index, mpq_srcptr at)
 {
-	struct expression *e = &l->s->expression[index];
+	struct switching_function *e = &l->s->function[index];
 	for (int i = e->breaks - 1; i >= 0; i--)
 		if (mpq_equal(e->at[i], at))
 			return !l->grown && l->interval[index] > i;
@@ -92,7 +93,7 @@ static void note_sign(const struct building *b, struct switching *s, mpq_srcptr 
 	mpq_set(sign->number, number);
 }
 
-/* In the order in which the equations show expressions */
+/* In the order in which the equations show switching functions */
 static int order_met(const struct looking *l)
 {
 	return l->row + (l->region > 0 ? l->b->model->n : 0);
@@ -114,8 +115,8 @@ static struct compared compared_here(struct looking *l, const struct node *node,
 	return (struct compared){ node, form_sum(form, &plain, true), constant, order_met(l) };
 }
 
-/* The expression of which a form is factor (expression - at); -1: it is a constant, then in `at` */
-static int expression_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
+/* The switching function of which a form is factor (switching function - at); -1: it is a constant, then in `at` */
+static int function_here(struct looking *l, const struct node *node, const struct form *form, mpq_ptr factor,
 			   mpq_ptr at)
 {
 	RATIONAL constant = ZERO;
@@ -125,20 +126,20 @@ static int expression_here(struct looking *l, const struct node *node, const str
 		note_sign(l->b, l->s, at, false);
 		return -1;
 	}
-	int e = find_expression(l->s, l->segment, &what, factor, at);
+	int e = find_switching_function(l->s, l->segment, &what, factor, at);
 	note_sign(l->b, l->s, factor, false);
 	return e;
 }
 
-/* The sign of a - b, linear forms: of a constant its own, else by the interval of the expression that it is a multiple
- * of. What is compared with a constant is written as it is, on whichever side it stands. */
+/* The sign of a - b, linear forms: of a constant its own, else by the interval of the switching function that it is a
+ * multiple of. What is compared with a constant is written as it is, on whichever side it stands. */
 static int sign_here(struct looking *l, const struct node *node, const struct form *a, const struct form *b)
 {
 	bool reversed = is_constant(a) && !is_constant(b);
 	struct form *form = reversed ? form_difference(b, a) : form_difference(a, b);
 	RATIONAL factor = ZERO, at = ZERO;
 	refuse_force(node, form);
-	int e = expression_here(l, node, form, factor, at), sign = mpq_sgn(at);
+	int e = function_here(l, node, form, factor, at), sign = mpq_sgn(at);
 	if (e >= 0)
 		sign = is_above(l, e, at) == (mpq_sgn(factor) > 0) ? 1 : -1;
 	form_free(form);
@@ -172,7 +173,7 @@ static struct form *extreme_here(struct looking *l, const struct atom *a, struct
 
 /* ---- friction: a breakpoint that stands twice, with the interval of sticking between ---- */
 
-static void add_stick(struct looking *l, struct expression *e, mpq_srcptr at)
+static void add_stick(struct looking *l, struct switching_function *e, mpq_srcptr at)
 {
 	int known = 0;
 	for (int i = 0; i < e->breaks; i++)
@@ -205,8 +206,8 @@ static bool is_positive_by_size(const struct form *form, mpq_ptr least, bool *bo
 			mpq_add(least, least, form->term[i].factor);
 		else
 			mpq_sub(least, least, size);
-		*bounded = *bounded && (basis->kind == BASIS_ONE || (basis->kind == BASIS_WAVE && !basis->power &&
-								     mpq_sgn(basis->wave->a) <= 0));
+		*bounded = *bounded && (basis->kind == BASIS_ONE || (basis->kind == BASIS_FORCING && !basis->power &&
+								     mpq_sgn(basis->forcing->a) <= 0));
 	}
 	return *bounded && mpq_sgn(least) >= 0;
 }
@@ -236,7 +237,7 @@ static struct form *force_here(struct looking *l, const struct node *node, struc
 /* What it can hold while it sticks: no less than its force. It is that of the regions next to where it sticks. */
 static struct form *rest_here(struct looking *l, struct friction *f, struct form *const *x, struct form *force)
 {
-	int side = l->grown ? 0 : l->interval[f->expression] - stick_of(l->s, f);
+	int side = l->grown ? 0 : l->interval[f->function] - stick_of(l->s, f);
 	if (side != 1 && side != -1)
 		return x[2];
 	struct form *more = less_in_velocity(x[2], force, x[0]);
@@ -273,9 +274,9 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 {
 	int index = add_friction(l, a);
 	struct friction *f = &l->s->friction[index];
-	f->expression = expression_here(l, a->node, x[0], f->factor, f->at);
+	f->function = function_here(l, a->node, x[0], f->factor, f->at);
 	check_forces_here(l, a);
-	add_stick(l, &l->s->expression[f->expression], f->at);
+	add_stick(l, &l->s->function[f->function], f->at);
 	for (int i = 1; i < a->operands; i++)
 		refuse_force(a->node, x[i]);
 	struct region *region = &l->s->region[l->region];
@@ -287,17 +288,17 @@ static struct form *friction_here(struct looking *l, const struct atom *a, struc
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
 }
 
-/* Whether a > b, by which expression and which way that is passed */
+/* Whether a > b, by which switching function and which way that is passed */
 static bool exceeds(struct looking *l, const struct node *node, const struct form *a, const struct form *b,
 		    struct slide *slide, int side)
 {
 	struct form *form = form_difference(a, b);
 	RATIONAL factor = ZERO;
 	refuse_force(node, form);
-	int e = expression_here(l, node, form, factor, slide->at[side]);
+	int e = function_here(l, node, form, factor, slide->at[side]);
 	if (e < 0)
 		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
-	slide->expression[side] = e;
+	slide->function[side] = e;
 	slide->upward[side] = mpq_sgn(factor) > 0;
 	return is_above(l, e, slide->at[side]) == slide->upward[side];
 }
@@ -393,8 +394,8 @@ static struct form *form_here(struct looking *l, const struct form *form)
 
 static int *intervals_of(const struct switching *s, int region)
 {
-	int *interval = ARRAY(int, s->expressions + 1);
-	for (int i = 0; i < s->expressions; i++)
+	int *interval = ARRAY(int, s->functions + 1);
+	for (int i = 0; i < s->functions; i++)
 		interval[i] = interval_of(s, region, i);
 	return interval;
 }
@@ -402,16 +403,17 @@ static int *intervals_of(const struct switching *s, int region)
 int count_candidates(struct switching *s)
 {
 	int count = 1;
-	for (int i = 0; i < s->expressions; i++) {
-		s->expression[i].stride = count;
-		if (count > LIMIT_CANDIDATES / (s->expression[i].breaks + 1))
+	for (int i = 0; i < s->functions; i++) {
+		s->function[i].stride = count;
+		if (count > LIMIT_CANDIDATES / (s->function[i].breaks + 1))
 			return LIMIT_CANDIDATES + 1;
-		count *= s->expression[i].breaks + 1;
+		count *= s->function[i].breaks + 1;
 	}
 	return count;
 }
 
-/* A guard is a breakpoint of its expression; of a bounce one that stands twice, with the interval of rest between. */
+/* A guard is a breakpoint of its switching function; of a bounce one that stands twice, with the interval of rest
+ * between. */
 static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
 {
 	struct impact_law *impact_law = &impact->in[l->segment];
@@ -419,15 +421,15 @@ static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr 
 	bool rising = node->comparison == CMP_GT || node->comparison == CMP_GE;
 	const struct form *guard = rising ? impact_law->guard : form_difference(NEW(struct form), impact_law->guard);
 	struct compared what = compared_here(l, node, guard, constant);
-	impact_law->expression = find_expression(l->s, l->segment, &what, impact_law->factor, impact_law->at);
+	impact_law->function = find_switching_function(l->s, l->segment, &what, impact_law->factor, impact_law->at);
 	note_sign(l->b, l->s, impact_law->factor, false);
 	impact_law->upward = (mpq_sgn(impact_law->factor) > 0) == rising;
 	if (!rising)
 		mpq_neg(impact_law->factor, impact_law->factor);
 	if (impact->bounces)
-		add_stick(l, &l->s->expression[impact_law->expression], impact_law->at);
+		add_stick(l, &l->s->function[impact_law->function], impact_law->at);
 	else
-		(void)is_above(l, impact_law->expression, impact_law->at);
+		(void)is_above(l, impact_law->function, impact_law->at);
 }
 
 static void meet_impacts(struct looking *l)
@@ -449,14 +451,14 @@ static void forget_region(const struct region *region)
 }
 
 /* One look at every region but the first `known`; false: something new was met on the way, but of the first `known`
- * then. The regions of one expression are its intervals, in order, so that those below a new breakpoint stay what they
- * are. */
+ * then. The regions of one switching function are its intervals, in order, so that those below a new breakpoint stay
+ * what they are. */
 static bool look(struct building *b, struct switching *s, int *known)
 {
 	struct region *before = s->region;
 	for (int r = *known; r < s->regions; r++)
 		forget_region(&before[r]);
-	bool single = s->expressions == 1 && s->segments == 1;
+	bool single = s->functions == 1 && s->segments == 1;
 	int in_one = count_candidates(s);
 	if (in_one > LIMIT_CANDIDATES)
 		too_many(b, s);
@@ -487,9 +489,9 @@ static bool look(struct building *b, struct switching *s, int *known)
 		meet_impacts(&l);
 		discard(l.known);
 		discard(interval);
-		*known = single && s->expressions == 1 ? l.lowest : 0;
+		*known = single && s->functions == 1 ? l.lowest : 0;
 		if (s->torn)
-			s->expressions = *known = 0;
+			s->functions = *known = 0;
 		s->torn = false;
 		if (l.grown)
 			return false;
@@ -521,7 +523,7 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
-	complete_expressions(s);
+	complete_switching_functions(s);
 	mark_possible(b, s);
 	if (!b->model->relative)                /* else it has been told */
 		check_jumps(b, s);
@@ -549,9 +551,9 @@ static bool same_system(const struct linear *a, const struct linear *b)
 static bool same_rows(const struct switching *s, int a, int b)
 {
 	bool same = true;
-	for (int e = 0; e < s->expressions && a != b; e++)
-		same = same && mpq_equal(s->expression[e].shift[a], s->expression[e].shift[b]) &&
-		       same_form(s->expression[e].in[a], s->expression[e].in[b]);
+	for (int e = 0; e < s->functions && a != b; e++)
+		same = same && mpq_equal(s->function[e].shift[a], s->function[e].shift[b]) &&
+		       same_form(s->function[e].in[a], s->function[e].in[b]);
 	return same;
 }
 

@@ -5,14 +5,14 @@
 
 #include "model/model.h"
 
-struct expression;
+struct switching_function;
 struct friction;
 struct hold;
 struct release;
 struct slide;
 struct slider;
 
-struct region {                     /* one interval for each expression, in one segment of time */
+struct region {                     /* one interval for each switching function, in one segment of time */
 	bool possible;              /* its inequalities can hold together */
 	int system;                 /* index of its equations; equal ones are one */
 	struct form **residual;     /* per row: linear; friction stands in it as an atom until its force is put in */
@@ -27,19 +27,19 @@ struct region {                     /* one interval for each expression, in one 
 struct sign { mpq_t number; bool least; };  /* by which something was decided; least: by its being at least 0 */
 struct switching {
 	int rows, *row;             /* of the equations that it is of */
-	int expressions;
-	struct expression *expression;
+	int functions;
+	struct switching_function *function;
 	int segments;               /* of time: those of the model, or 1 where nothing of it changes */
-	/* all, possible or not: products of the expressions' intervals, of each segment of time in order */
+	/* all, possible or not: products of the switching functions' intervals, of each segment of time in order */
 	int regions;
 	struct region *region;      /* NULL where there are parts */
 	int systems;
 	/* where there are parts one: that of the first region of each; one segment of time */
 	struct linear *system;
 	int aparts;
-	const struct node **apart;  /* terms that share no expression with others */
+	const struct node **apart;  /* terms that share no switching function with others */
 	bool torn;                  /* one has become such: the search begins anew */
-	/* per system: a segment in which it serves; there expressions are the same in all */
+	/* per system: a segment in which it serves; there switching functions are the same in all */
 	int *system_segment;
 	int parts;                  /* 0: its regions are those of all coordinates together */
 	struct region_part *part;
@@ -53,34 +53,34 @@ struct switching {
 	const struct atom **transmitted;
 	int signs;                  /* where there are factors */
 	struct sign *sign;
-	int sharing;                /* parts that have these regions together, since some move as a whole */
+	int sharing;                /* parts that have these regions together, since rigid-body modes couple them */
 };
 /* Coordinates that nothing outside of them acts on, in no region: they have regions of their own, and cross breakpoints
  * at times of their own. */
 struct region_part {
 	int coord;                  /* the first */
-	struct model *model;        /* of them alone; its `switching` has no expressions where they are linear */
+	struct model *model; /* of them alone; its `switching` has no switching functions where they are linear */
 	int *state;                 /* per state of it: that of the whole model */
-	int *input;                 /* likewise of the inputs that act on it or are in its expressions */
-	int *expression;            /* likewise */
+	int *input;                 /* likewise of the inputs that act on it or are in its switching functions */
+	int *function;              /* likewise */
 };
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
 bool is_piecewise_linear(const struct building *b);
-int  interval_of(const struct switching *s, int region, int expression);
+int  interval_of(const struct switching *s, int region, int function);
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
 _Noreturn void too_many_in_time(const struct switching *s);
-int  breaks_of_all(const struct switching *s);               /* breakpoints of all its expressions */
+int  breaks_of_all(const struct switching *s);               /* breakpoints of all its switching functions */
 int  possible_regions(const struct switching *s);
 
 /* ---- parts.c: regions of independent coordinates ---- */
 
 void find_regions(struct building *b);                      /* says what cannot be treated */
 /* of a region of a part in the number of the model's: its intervals, by the strides of the whole */
-int  share_of_region(const struct region_part *part, const struct switching *whole, int region);
+int  share_of_region(const struct region_part *part, const struct switching *full, int region);
 void place_region_loads(struct building *b);
 /* their systems; after the loads of all have their places */
 void build_regions(struct building *b);

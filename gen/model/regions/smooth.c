@@ -23,7 +23,7 @@ enum {
 
 struct surface {
 	const struct form *g;       /* its first factor is 1 */
-	const struct atom *whole;   /* what decides on it, for a message: a product or choice in place of its operand */
+	const struct atom *full;    /* what decides on it, for a message: a product or choice in place of its operand */
 	const struct node *test;    /* the comparison itself */
 	bool equality;              /* some == or != does */
 	bool abrupt;                /* something decides that is no abs, min, max, clip, deadzone or table */
@@ -51,7 +51,7 @@ static bool moves_in_a_step(const struct model *model, const struct form *form)
 		ramps = ramps || model->system.input[i].hold;
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_WAVE || basis->kind == BASIS_COORD ||
+		if (basis->kind == BASIS_FORCING || basis->kind == BASIS_COORD ||
 		    (basis->atom && (basis->atom->time || basis->atom->state)))
 			return true;
 		if (ramps && ((basis->kind == BASIS_INPUT && basis->order == 0) || (basis->atom && basis->atom->input)))
@@ -70,7 +70,7 @@ static mpq_srcptr first_factor(const struct form *form)
 
 struct finding {
 	struct search *s;
-	const struct atom *atom, *whole;
+	const struct atom *atom, *full;
 };
 
 static void add_surface(void *context, const struct form *d)
@@ -87,7 +87,7 @@ static void add_surface(void *context, const struct form *d)
 	while (at < s->surfaces && !same_form(s->surface[at].g, g))
 		at++;
 	if (at == s->surfaces)
-		*MORE(s->surface, s->surfaces) = (struct surface){ .g = g, .whole = f->whole, .test = a->node };
+		*MORE(s->surface, s->surfaces) = (struct surface){ .g = g, .full = f->full, .test = a->node };
 	s->surface[at].equality |= (a->kind == ATOM_COMPARE && a->comparison >= CMP_EQ) || a->kind == ATOM_CHOOSE;
 	s->surface[at].abrupt |= a->kind != ATOM_CALL || a->function == FN_SGN;
 }
@@ -97,17 +97,17 @@ static void add_decision(void *context, const struct form *d)
 	visit_surfaces(d, add_surface, context);
 }
 
-static void find_surfaces(struct search *s, const struct form *form, const struct atom *whole)
+static void find_surfaces(struct search *s, const struct form *form, const struct atom *full)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
 		if (!a || s->seen[a->index])
 			continue;
 		s->seen[a->index] = true;
-		visit_decisions(a, add_decision, &(struct finding){ s, a, whole ? whole : a });
+		visit_decisions(a, add_decision, &(struct finding){ s, a, full ? full : a });
 		for (int k = 0; k < a->operands; k++)
 			find_surfaces(s, a->operand[k],
-				      a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? whole ? whole : a
+				      a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? full ? full : a
 				      : a->kind == ATOM_CHOOSE && k == 0               ? a
 										       : NULL);
 	}
@@ -408,18 +408,18 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 		return;
 	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
 		report_friction(surface->test, surface_text(model, surface->g));
-	bool timed = linear_in_time(surface->g, &factor, &phase), whole = order % 10 == 0 || order == SURE;
-	if (!whole && !timed && !smooth->singular) {
-		smooth->singular = surface->whole->node;
+	bool timed = linear_in_time(surface->g, &factor, &phase), full = order % 10 == 0 || order == SURE;
+	if (!full && !timed && !smooth->singular) {
+		smooth->singular = surface->full->node;
 		smooth->singular_where = surface_text(model, surface->g);
 	}
 	if (order >= HIGHEST || (smooth->tenths && smooth->tenths <= order))
 		return;
 	smooth->tenths = order;
 	smooth->kind = order == JUMP ? SMOOTH_JUMP : SMOOTH_KINK;
-	smooth->node = surface->whole->node;
+	smooth->node = surface->full->node;
 	smooth->where = surface_text(model, surface->g);
-	smooth->piecewise = is_piecewise_form(form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->whole }));
+	smooth->piecewise = is_piecewise_form(form_unit((struct basis){ .kind = BASIS_ATOM, .atom = surface->full }));
 	smooth->timed = timed;
 }
 
@@ -444,7 +444,7 @@ static void judge(void *context)
 	s.sample = sample_new(PRECISION, spot_leaf, &spot);
 	for (int i = 0; i < count; i++) {
 		const struct form *form = left ? model->schedule.operator[0].left[i]
-		    : moving_part(b->whole->residual[i].form);
+		    : moving_part(b->full->residual[i].form);
 		memset(s.seen, 0, (size_t)s.count);
 		s.surfaces = 0;
 		find_surfaces(&s, form, NULL);
@@ -457,7 +457,7 @@ void judge_smoothness(struct building *b)
 {
 	struct collector *c = &b->collector;
 	const struct irrationals used = c->irrationals;
-	if (!b->whole || (b->model->remainder.force_columns == 0 && !b->model->switching))
+	if (!b->full || (b->model->remainder.force_columns == 0 && !b->model->switching))
 		return;
 	c->whole_time = true;           /* conditions on t stay open */
 	statement_guard(judge, b);

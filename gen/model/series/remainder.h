@@ -46,8 +46,8 @@ struct rest_force {                 /* on the equation of a coordinate: a functi
 	int coord, function;
 	struct form *form;
 };
-struct wave_force {                 /* of a wave alone, of its cos and its sin: on the equation of each coordinate */
-	struct wave *wave;
+struct forcing_force { /* of a forcing term alone, of its cos and its sin: on the equation of each coordinate */
+	struct forcing *forcing;
 	mpq_t *force[2];
 };
 struct splitting {                  /* the remainder, sorted: see split.c */
@@ -55,8 +55,8 @@ struct splitting {                  /* the remainder, sorted: see split.c */
 	struct time_function *function; /* the first is 1 */
 	int rests;                  /* forces that are neither */
 	struct rest_force *rest;
-	int waves;                  /* known loads to which modes respond exactly; none where loads are left over */
-	struct wave_force *wave;
+	int forcings;               /* known loads to which modes respond exactly; none where loads are left over */
+	struct forcing_force *forcing;
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool ends_steady;           /* there is a last segment of time, in which all functions are constant */
 	const struct atom *unknown; /* changes its formula in time, it is not known when; NULL: none does */

@@ -41,11 +41,11 @@ void choose_order(struct model *model, bool single)
 
 /* ---- what the command line and the spec ask for ---- */
 
-struct node *asked_or_written(struct building *b, const char *asked, struct node *written, struct place *at)
+struct node *requested_or_written(struct building *b, const char *requested, struct node *written, struct place *at)
 {
-	if (!asked)
+	if (!requested)
 		return written;
-	struct source *source = source_argument(asked);
+	struct source *source = source_argument(requested);
 	struct node *node = parse_argument(b->spec, source, 0, source->length);
 	*at = (struct place){ source, 0 };
 	if (!node)
@@ -82,20 +82,20 @@ static void evaluate_tolerance(struct building *b, struct node *node, struct pla
 static int stages_of(struct building *b, struct node *node)
 {
 	int stages = LEAST_STAGES;
-	RATIONAL asked = ZERO;
-	collect_constant(&b->collector, node, asked);
-	while (stages <= MOST_STAGES && mpq_cmp_ui(asked, (unsigned long)stages, 1) != 0)
+	RATIONAL requested = ZERO;
+	collect_constant(&b->collector, node, requested);
+	while (stages <= MOST_STAGES && mpq_cmp_ui(requested, (unsigned long)stages, 1) != 0)
 		stages += 2;
 	if (stages > MOST_STAGES)
 		error(node->start, NULL, "the number of stages of scheme %s is 3, 5, 7 or 9, found %s",
-		      scheme_name(b->model->scheme), readable_text(asked));
+		      scheme_name(b->model->scheme), readable_text(requested));
 	return stages;
 }
 
 /* The steps that one expansion of fixed order is over */
 static int steps_of_expansion(struct building *b)
 {
-	struct node *over = b->model->asked.scheme_over;
+	struct node *over = b->model->request.scheme_over;
 	const struct scheme_row *row = scheme_row(b->model->scheme);
 	if (!over)
 		return 1;
@@ -112,9 +112,9 @@ void evaluate_truncation(void *context)
 	struct building *b = context;
 	struct model *model = b->model;
 	struct truncation *truncation = &model->truncation;
-	struct place at = b->spec->asked.tolerance ? b->spec->asked.tolerance->start : model->asked.scheme_at;
-	struct node *tolerance = asked_or_written(b, b->request->tolerance, b->spec->asked.tolerance, &at);
-	struct node *order = model->asked.scheme_order, *substeps = b->spec->asked.substeps;
+	struct place at = b->spec->request.tolerance ? b->spec->request.tolerance->start : model->request.scheme_at;
+	struct node *tolerance = requested_or_written(b, b->request->tolerance, b->spec->request.tolerance, &at);
+	struct node *order = model->request.scheme_order, *substeps = b->spec->request.substeps;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
 	if (row->stages) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Whether two models differ in how large their loads are, and in nothing else: so a param is known as an amplitude. */
 #include "model/checks.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/reads.h"
 #include "model/regions/regions.h"
 
@@ -16,7 +16,7 @@ static bool same_but_loads(const struct linear *p, const struct linear *q, bool 
 	    !rationals_equal(cells, p->K, q->K))
 		return false;
 	for (int l = 0; l < p->loads; l++) {
-		const struct wave *u = p->load[l].wave, *v = q->load[l].wave;
+		const struct forcing *u = p->load[l].forcing, *v = q->load[l].forcing;
 		if (!mpq_equal(u->a, v->a) || !mpq_equal(u->w, v->w) || !mpq_equal(u->p, v->p) ||
 		    p->load[l].columns != q->load[l].columns)
 			return false;
@@ -50,10 +50,10 @@ static bool same_remainders(const struct model *a, const struct model *b)
 /* What is compared with breakpoints may read loads. */
 static bool same_breakpoints(const struct switching *a, const struct switching *b, int states)
 {
-	bool same = a->expressions == b->expressions && a->regions == b->regions && a->systems == b->systems &&
+	bool same = a->functions == b->functions && a->regions == b->regions && a->systems == b->systems &&
 		    a->parts == b->parts;
-	for (int i = 0; i < a->expressions && same; i++) {
-		const struct expression *e = &a->expression[i], *f = &b->expression[i];
+	for (int i = 0; i < a->functions && same; i++) {
+		const struct switching_function *e = &a->function[i], *f = &b->function[i];
 		same = e->breaks == f->breaks && rationals_equal(e->breaks, e->at, f->at) &&
 		       rationals_equal(states, e->row->state, f->row->state);
 	}
@@ -66,8 +66,8 @@ static bool change_alike(const struct switching *a, const struct switching *b)
 	bool alike = true;
 	RATIONAL first = ZERO, other = ZERO;
 	for (int l = 0; a->systems > 0 && l < a->system->loads; l++) {
-		const struct wave *wave = a->system->load[l].wave;
-		const bool constant = mpq_sgn(wave->a) == 0 && !oscillates(wave);
+		const struct forcing *forcing = a->system->load[l].forcing;
+		const bool constant = mpq_sgn(forcing->a) == 0 && !oscillates(forcing);
 		const int numbers = a->system->segments * a->system->n;
 		for (int k = 1; k < a->systems && constant; k++)
 			for (int i = 0; i < numbers && alike; i++) {

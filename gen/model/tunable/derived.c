@@ -106,7 +106,7 @@ static void derive_in(struct spec *spec, struct node **place)
 /* ---- what the target reads ---- */
 
 /* All expressions of the spec but values of params, initial values and what holds for plgen alone */
-static void each_expression(struct spec *spec, void (*visit)(void *context, struct node **place), void *context)
+static void each_function(struct spec *spec, void (*visit)(void *context, struct node **place), void *context)
 {
 	for (int i = 0; i < spec->equations; i++) {
 		visit(context, &spec->equation[i].left);
@@ -138,7 +138,7 @@ void derive_params(struct spec *spec)
 	spread_tuned(spec);
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->tuning.derived = s->tuning.derived && s->tuning.number;  /* -D gives it another value */
-	each_expression(spec, derive_here, spec);
+	each_function(spec, derive_here, spec);
 }
 
 static void add_read(void *context, struct node **place)
@@ -150,7 +150,7 @@ void warn_of_unread(const struct model *model)
 {
 	const struct spec *spec = model->spec;
 	unsigned read = 0;
-	each_expression(model->spec, add_read, &read);
+	each_function(model->spec, add_read, &read);
 	for (int k = 0; k < spec->tunables - spec->derived && !model->relative; k++)
 		if (!(read >> k & 1))
 			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
@@ -163,10 +163,10 @@ void warn_of_unread(const struct model *model)
  * looked at with the model. */
 static bool stays_here(const struct node *node, int i)
 {
-	const bool wave = node->function == FN_SIN || node->function == FN_COS;
+	const bool forcing = node->function == FN_SIN || node->function == FN_COS;
 	return node->kind == NODE_COMPARE || (node->kind == NODE_CHOOSE && i == 0) ||
 	       (node->kind == NODE_POWER && i == 1) ||
-	       (node->kind == NODE_CALL && (!wave || is_number(node->child[i])));
+	       (node->kind == NODE_CALL && (!forcing || is_number(node->child[i])));
 }
 
 static _Noreturn void refuse_decided(const struct node *node, const struct node *name)
@@ -203,5 +203,5 @@ static void check_in(void *context, struct node **place)
 void check_tuned(const struct model *model)
 {
 	bool regions = model->switching;
-	each_expression(model->spec, check_in, &regions);
+	each_function(model->spec, check_in, &regions);
 }

@@ -41,8 +41,9 @@ static mpq_t *values_at(const struct elsewhere *s, int place)
 
 static bool same_load(const struct load *a, const struct load *b, bool any_rate)
 {
-	mpq_srcptr wa = a->wave->w, wb = b->wave->w;
-	return a->powers == b->powers && mpq_equal(a->wave->a, b->wave->a) && mpq_equal(a->wave->p, b->wave->p) &&
+	mpq_srcptr wa = a->forcing->w, wb = b->forcing->w;
+	return a->powers == b->powers && mpq_equal(a->forcing->a, b->forcing->a) &&
+	       mpq_equal(a->forcing->p, b->forcing->p) &&
 	       (mpq_sgn(wa) != 0) == (mpq_sgn(wb) != 0) && (any_rate || mpq_equal(wa, wb));
 }
 

@@ -37,11 +37,11 @@ static bool same_region(const struct region *a, const struct region *b)
 	return same;
 }
 
-static bool same_impact(const struct impact *whole, const struct impact *other, int segment)
+static bool same_impact(const struct impact *full, const struct impact *other, int segment)
 {
-	const struct impact_law *a = &whole->in[segment], *b = &other->in[segment];
-	bool same = whole->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
-		    a->expression == b->expression;
+	const struct impact_law *a = &full->in[segment], *b = &other->in[segment];
+	bool same = full->bounces == other->bounces && a->jumps == b->jumps && a->upward == b->upward &&
+		    a->function == b->function;
 	for (int k = 0; k < a->jumps && same; k++)
 		same = a->jump[k].state == b->jump[k].state;
 	return same;
@@ -50,15 +50,15 @@ static bool same_impact(const struct impact *whole, const struct impact *other, 
 static bool same_regions(const struct model *model, const struct model *other)
 {
 	const struct switching *a = model->switching, *b = other->switching;
-	if (!b || a->expressions != b->expressions || a->segments != b->segments || a->regions != b->regions ||
+	if (!b || a->functions != b->functions || a->segments != b->segments || a->regions != b->regions ||
 	    a->systems != b->systems || a->impacts != b->impacts || a->frictions != b->frictions)
 		return false;
 	bool same = true;
-	for (int e = 0; e < a->expressions; e++)
-		same = same && a->expression[e].breaks == b->expression[e].breaks;
-	for (int e = 0; e < a->expressions && same; e++)
-		for (int k = 1; k < a->expression[e].breaks; k++)
-			same = same && is_stick(&a->expression[e], k) == is_stick(&b->expression[e], k);
+	for (int e = 0; e < a->functions; e++)
+		same = same && a->function[e].breaks == b->function[e].breaks;
+	for (int e = 0; e < a->functions && same; e++)
+		for (int k = 1; k < a->function[e].breaks; k++)
+			same = same && is_stick(&a->function[e], k) == is_stick(&b->function[e], k);
 	for (int r = 0; r < a->regions && same; r++)
 		same = same_region(&a->region[r], &b->region[r]);
 	for (int i = 0; i < a->segments * a->impacts && same; i++)

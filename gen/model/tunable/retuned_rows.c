@@ -54,10 +54,10 @@ static void equation_row(const struct linear *system, int equation, int size, co
 
 /* Likewise of an output R x - W a: what of it is no highest derivative. form: NULL: it reads none */
 static void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest,
-		     const mpq_t *whole, mpq_t *R, mpq_t *W)
+		     const mpq_t *full, mpq_t *R, mpq_t *W)
 {
 	for (int j = 0; j < size; j++)
-		mpq_set(R[j], whole[j]);
+		mpq_set(R[j], full[j]);
 	for (int i = 0; form && i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
 		if (basis->kind != BASIS_COORD || basis->order < model->frame.coord[basis->index]->highest)
@@ -125,10 +125,10 @@ static void list_equations(struct listing *l, int index)
 /* The last row apart */
 static void list_parts(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
 {
-	const struct retuned_row whole = l->row[l->rows - 1];
+	const struct retuned_row full = l->row[l->rows - 1];
 	const int size = l->x->size;
-	add_row(l, W, whole.of, whole.index);
-	mpq_t *rest = add_row(l, R, whole.of, whole.index);
+	add_row(l, W, full.of, full.index);
+	mpq_t *rest = add_row(l, R, full.of, full.index);
 	part_row(l->model, form, size, highest_of(l, system), rest - 2 * size, rest, rest - size);
 }
 
@@ -142,20 +142,20 @@ static void list_linear(struct listing *l)
 		list_parts(l, 0, l->model->reduction.row ? NULL : output->form, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W);
 	}
 	for (int i = 0; i < system->loads; i++)
-		add_number(l, RETUNED_FREQUENCY, 0, i, system->load[i].wave->w);
+		add_number(l, RETUNED_FREQUENCY, 0, i, system->load[i].forcing->w);
 }
 
 /* ---- of regions ---- */
 
-static void list_expressions(struct listing *l)
+static void list_switching_functions(struct listing *l)
 {
 	const struct switching *s = l->model->switching;
 	for (int segment = 0; segment < s->segments; segment++)
-		for (int e = 0; e < s->expressions; e++)
-			list_output(l, RETUNED_EXPRESSION, segment, e, s->expression[e].row, segment);
-	for (int e = 0; e < s->expressions; e++)
-		for (int k = 0; k < s->expression[e].breaks; k++)
-			add_number(l, RETUNED_BREAK, e, k, s->expression[e].at[k]);
+		for (int e = 0; e < s->functions; e++)
+			list_output(l, RETUNED_FUNCTION, segment, e, s->function[e].row, segment);
+	for (int e = 0; e < s->functions; e++)
+		for (int k = 0; k < s->function[e].breaks; k++)
+			add_number(l, RETUNED_BREAK, e, k, s->function[e].at[k]);
 }
 
 static void list_region(struct listing *l, int index)
@@ -207,9 +207,9 @@ static void list_signs(struct listing *l)
 	const struct switching *s = l->model->switching;
 	int count = 0;
 	RATIONAL difference = ZERO;
-	for (int e = 0; e < s->expressions; e++)
-		for (int k = 1; k < s->expression[e].breaks; k++) {
-			mpq_sub(difference, s->expression[e].at[k], s->expression[e].at[k - 1]);
+	for (int e = 0; e < s->functions; e++)
+		for (int k = 1; k < s->function[e].breaks; k++) {
+			mpq_sub(difference, s->function[e].at[k], s->function[e].at[k - 1]);
 			if (mpq_sgn(difference) != 0)
 				add_number(l, RETUNED_SIGN, count++, 0, difference);
 		}
@@ -220,7 +220,7 @@ static void list_signs(struct listing *l)
 static void list_regions(struct listing *l)
 {
 	const struct switching *s = l->model->switching;
-	list_expressions(l);
+	list_switching_functions(l);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)
 			list_region(l, r);

@@ -25,7 +25,7 @@ enum retuned_kind {                 /* of rows: */
 	/* which is that of W a = R x: of R, and of W over highest derivatives; likewise of what reads these */
 	RETUNED_R, RETUNED_W,
 	RETUNED_OUTPUT, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W, RETUNED_FREQUENCY, /* of linear models; load, a number */
-	RETUNED_EXPRESSION,         /* of segment of time: expression */
+	RETUNED_FUNCTION,           /* of segment of time: expression */
 	RETUNED_BREAK,              /* of expression: breakpoint; a number, in column 0, as those below are */
 	RETUNED_HOLD, RETUNED_RELEASE, RETUNED_FRICTION, /* of region: one of its holds, releases; friction */
 	RETUNED_RELEASE_R, RETUNED_RELEASE_W, RETUNED_FRICTION_R, RETUNED_FRICTION_W,

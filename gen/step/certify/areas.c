@@ -98,21 +98,21 @@ static void add_guard(const struct trajectory *t, struct area *area, struct guar
 	*MORE(area->guard, area->guards) = guard;
 }
 
-/* The ends of an interval of an expression */
-static void add_ends(const struct trajectory *t, struct area *area, int region, int expression)
+/* The ends of an interval of a switching function */
+static void add_ends(const struct trajectory *t, struct area *area, int region, int function)
 {
-	const struct expression *e = &t->s->expression[expression];
-	int interval = interval_of(t->s, region, expression), segment = segment_of_region(t->s, region);
+	const struct switching_function *e = &t->s->function[function];
+	int interval = interval_of(t->s, region, function), segment = segment_of_region(t->s, region);
 	RATIONAL limit = ZERO;
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
 		if (breakpoint < 0 || breakpoint == e->breaks ||
-		    (t->s->region[region].possible && is_released(&t->s->region[region], expression, upward)))
+		    (t->s->region[region].possible && is_released(&t->s->region[region], function, upward)))
 			continue;
 		mpq_t *row = rationals(t->n);
 		int leads = upward ? e->stride : -e->stride;
-		int impact = impact_at(t->s, segment, expression, e->at[breakpoint], upward);
-		if (impact < 0 && impact_resting(t->s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
+		int impact = impact_at(t->s, segment, function, e->at[breakpoint], upward);
+		if (impact < 0 && impact_resting(t->s, segment, function, interval + (upward ? 1 : -1)) >= 0)
 			leads *= 2;             /* past the interval of rest, which impacts alone lead to */
 		trajectory_row(t, e->row, row);
 		mpq_set(limit, e->at[breakpoint]);
@@ -121,7 +121,7 @@ static void add_ends(const struct trajectory *t, struct area *area, int region, 
 		for (int i = 0; i < t->n && !upward; i++)
 			mpq_neg(row[i], row[i]);
 		add_guard(t, area,
-			 (struct guard){ .expression = expression, .breakpoint = breakpoint, .upward = upward,
+			 (struct guard){ .function = function, .breakpoint = breakpoint, .upward = upward,
 					.impact = impact, .leads = leads },
 			 row, limit);
 	}
@@ -162,27 +162,28 @@ static struct stream *stream_of_system(struct trajectory *t, int system, mpq_t *
 	return t->flow[system];
 }
 
-/* What lets go an expression that is held */
-static void add_releases(const struct trajectory *t, struct area *area, int region, int expression)
+/* What lets go a switching function that is held */
+static void add_releases(const struct trajectory *t, struct area *area, int region, int function)
 {
 	const struct region *r = &t->s->region[region];
-	int stride = t->s->expression[expression].stride, interval = interval_of(t->s, region, expression);
+	int stride = t->s->function[function].stride, interval = interval_of(t->s, region, function);
 	RATIONAL zero = ZERO;
 	for (int k = 0; k < r->releases; k++) {
 		const struct release *release = &r->release[k];
-		if (release->expression != expression)
+		if (release->function != function)
 			continue;
 		mpq_t *row = rationals(t->n);
 		trajectory_row(t, release->row, row);
 		add_guard(t, area,
-			 (struct guard){ .expression = expression, .breakpoint = interval - !release->upward,
+			 (struct guard){ .function = function, .breakpoint = interval - !release->upward,
 					.upward = release->upward, .release = true, .impact = -1,
 					.leads = release->upward ? stride : -stride },
 			 row, zero);
 	}
 }
 
-/* Regions that cannot be are passed through where two expressions cross at once; the equations stay those before. */
+/* Regions that cannot be are passed through where two switching functions cross at once; the equations stay those
+ * before. */
 struct area *trajectory_area(struct trajectory *t, int region)
 {
 	struct area *area = &t->area[region];
@@ -193,8 +194,8 @@ struct area *trajectory_area(struct trajectory *t, int region)
 	*area = (struct area){ .system = system };
 	area->flow = stream_of_system(t, system, &area->A);
 	area->growth = t->growth[system];
-	for (int e = 0; e < t->s->expressions; e++) {
-		bool held = r->possible && is_stick(&t->s->expression[e], interval_of(t->s, region, e));
+	for (int e = 0; e < t->s->functions; e++) {
+		bool held = r->possible && is_stick(&t->s->function[e], interval_of(t->s, region, e));
 		if (!held)
 			add_ends(t, area, region, e);
 		if (r->possible)
@@ -208,7 +209,7 @@ void trajectory_enter(struct trajectory *t, int region)
 	struct area *area = trajectory_area(t, region);
 	t->region = region;
 	t->grid.met = false;
-	for (int e = 0; e < t->s->expressions; e++) {
+	for (int e = 0; e < t->s->functions; e++) {
 		t->resting[e] = false;
 		t->fresh.order[e] = 0;
 	}
@@ -217,20 +218,20 @@ void trajectory_enter(struct trajectory *t, int region)
 
 /* ---- what loads and inputs are at a time ---- */
 
-static void wave_at(const struct trajectory *t, const struct load *load, int column, mpq_srcptr time, mpfi_ptr z)
+static void forcing_at(const struct trajectory *t, const struct load *load, int column, mpq_srcptr time, mpfi_ptr z)
 {
-	const struct wave *wave = load->wave;
-	bool turns = oscillates(wave);
+	const struct forcing *forcing = load->forcing;
+	bool turns = oscillates(forcing);
 	RATIONAL argument = ZERO;
 	INTERVAL factor = OVER_BITS(t->precision);
-	mpq_mul(argument, wave->a, time);
+	mpq_mul(argument, forcing->a, time);
 	mpfi_set_q(factor, argument);
 	mpfi_exp(z, factor);
 	for (int k = 0; k < (turns ? column / 2 : column); k++)
 		mpfi_mul_q(z, z, time);
 	if (turns) {
-		mpq_mul(argument, wave->w, time);
-		mpq_add(argument, argument, wave->p);
+		mpq_mul(argument, forcing->w, time);
+		mpq_add(argument, argument, forcing->p);
 		mpfi_set_q(factor, argument);
 		if (mpq_sgn(argument) == 0)
 			mpfi_set_ui(factor, column % 2 == 0);
@@ -244,7 +245,7 @@ void trajectory_loads(struct trajectory *t)
 {
 	for (int l = 0; l < t->system->loads; l++)
 		for (int k = 0; k < t->system->load[l].columns && t->layout.load[l] >= 0; k++)
-			wave_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
+			forcing_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
 }
 
 bool trajectory_meets(const struct trajectory *t, const struct guard *one, const struct guard *other)
@@ -264,7 +265,7 @@ const char *trajectory_time(mpq_srcptr time)
 bool trajectory_lost(struct trajectory *t, const struct guard *guard, const char *what)
 {
 	t->undecided = format("from t = %s s on it is not known whether %s passes %s: %s", trajectory_time(t->base),
-			      spoken_expression(t->model, guard->expression),
-			      readable_text(t->s->expression[guard->expression].at[guard->breakpoint]), what);
+			      text_of_function(t->model, guard->function),
+			      readable_text(t->s->function[guard->function].at[guard->breakpoint]), what);
 	return false;
 }

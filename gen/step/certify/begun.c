@@ -25,14 +25,14 @@ static int sign_at_start(struct trajectory *t, const mpq_t *row, mpq_srcptr less
 	return sign;
 }
 
-/* Where an expression that stands on a breakpoint is heading: the sign of its first derivative that is not 0 */
-static int heading(struct trajectory *t, int expression, bool *known)
+/* Where a switching function that stands on a breakpoint is heading: the sign of its first derivative that is not 0 */
+static int heading(struct trajectory *t, int function, bool *known)
 {
 	mpq_t *row = rationals(t->n);
 	int sign = 0;
 	RATIONAL zero = ZERO;
 	*known = true;
-	trajectory_row(t, t->s->expression[expression].row, row);
+	trajectory_row(t, t->s->function[function].row, row);
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
 		row = trajectory_times(t, row, t->at->A);
 		sign = sign_at_start(t, row, zero, known);
@@ -40,10 +40,10 @@ static int heading(struct trajectory *t, int expression, bool *known)
 	return sign;
 }
 
-/* The interval of an expression, below where it stands on a breakpoint; then *on */
-static int interval_at_start(struct trajectory *t, int expression, bool *on, bool *known)
+/* The interval of a switching function, below where it stands on a breakpoint; then *on */
+static int interval_at_start(struct trajectory *t, int function, bool *on, bool *known)
 {
-	const struct expression *e = &t->s->expression[expression];
+	const struct switching_function *e = &t->s->function[function];
 	mpq_t *row = rationals(t->n);
 	int interval = 0, sign = 1;
 	*on = false;
@@ -59,21 +59,21 @@ static int interval_at_start(struct trajectory *t, int expression, bool *on, boo
 	return interval;
 }
 
-static bool stands_where(struct trajectory *t, int expression)
+static bool stands_where(struct trajectory *t, int function)
 {
 	t->undecided =
 		format("at t = %s s it is not known on which side of a breakpoint %s is", trajectory_time(t->base),
-			      spoken_expression(t->model, expression));
+			      text_of_function(t->model, function));
 	return false;
 }
 
 /* On a breakpoint that stands twice it rests first, but what comes to a stop or leaves it */
-static int rest_at_start(struct trajectory *t, int expression, int interval, bool *on, bool *known)
+static int rest_at_start(struct trajectory *t, int function, int interval, bool *on, bool *known)
 {
-	const struct expression *e = &t->s->expression[expression];
+	const struct switching_function *e = &t->s->function[function];
 	if (!*on || !is_stick(e, interval + 1))
 		return interval;
-	int impact = impact_resting(t->s, t->when.segment, expression, interval + 1), speed = 0;
+	int impact = impact_resting(t->s, t->when.segment, function, interval + 1), speed = 0;
 	RATIONALS *row = rationals(t->n);
 	RATIONAL zero = ZERO;
 	if (impact >= 0) {
@@ -86,7 +86,7 @@ static int rest_at_start(struct trajectory *t, int expression, int interval, boo
 
 bool trajectory_place(struct trajectory *t)
 {
-	int count = t->s->expressions, region = t->when.segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
+	int count = t->s->functions, region = t->when.segment * (t->s->segments > 1 ? regions_at_once(t->s) : 0);
 	bool *on = ARRAY(bool, count), *above = ARRAY(bool, count), known;
 	for (int e = 0; e < count; e++) {
 		int interval = interval_at_start(t, e, &on[e], &known);
@@ -94,7 +94,7 @@ bool trajectory_place(struct trajectory *t)
 			interval = rest_at_start(t, e, interval, &on[e], &known);
 		if (!known)
 			return stands_where(t, e);
-		region += interval * t->s->expression[e].stride;
+		region += interval * t->s->function[e].stride;
 	}
 	trajectory_enter(t, region);
 	if (has_events(t->s) && !trajectory_resolve(t, NULL, NULL))
@@ -106,7 +106,7 @@ bool trajectory_place(struct trajectory *t)
 			if (on[e] && !known)
 				return stands_where(t, e);
 			if (up != above[e])
-				trajectory_enter(t, t->region + (up ? 1 : -1) * t->s->expression[e].stride);
+				trajectory_enter(t, t->region + (up ? 1 : -1) * t->s->function[e].stride);
 			above[e] = up;
 		}
 	for (int e = 0; e < count; e++)

@@ -65,14 +65,14 @@ struct choice {
 
 /* ---- trajectory.c: a piecewise-linear model through its crossings, enclosed ---- */
 
-struct passed {                     /* a breakpoint, by its expression */
-	int expression, breakpoint;
+struct passed {                     /* a breakpoint, by its switching function */
+	int function, breakpoint;
 	bool upward;
 	bool jumped;                /* by a load that jumps, not by crossing */
 	bool faint;                 /* it begins with speed and acceleration 0: what rested is let go */
 	bool stands;                /* it rests as impacts have left it with speed 0 where it would bounce */
 	mpfi_t at;                  /* when [s] */
-	double speed;               /* of the expression there [its unit/s] */
+	double speed;               /* of the switching function there [its unit/s] */
 	double size;                /* of what it is summed from there [its unit] */
 };
 struct trajectory;

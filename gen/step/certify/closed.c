@@ -44,7 +44,7 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 
 static bool fill_row(const struct step *step, const struct closed_form *form, mpq_srcptr t, double *row)
 {
-	struct place at = step->model->asked.step_at;
+	struct place at = step->model->request.step_at;
 	bool finite = true;
 	for (int i = 0; i < step->branch->system.states; i++) {
 		row[i] = started_value(form[i].count, form[i].list, t, false, at, "a value of the self-test").value;
@@ -83,6 +83,6 @@ struct reference reference_of(const struct step *step)
 		return reference_of_trajectory(step);
 	struct reference r = new_reference(step);
 	fill_rows(step, closed_forms(step, &r), &r);
-	fill_units(&r, step->model->asked.single);
+	fill_units(&r, step->model->request.single);
 	return r;
 }

@@ -28,12 +28,13 @@ mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output
 void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh);
 bool trajectory_unknown(struct trajectory *t, const char *what); /* false */
 void trajectory_hold(struct trajectory *t);                  /* states that the region gives */
-/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
- * first one is but rounding */
-int  trajectory_heads(const struct trajectory *t, const struct area *area, int expression, bool still, bool *known);
+/* The side to which a switching function on a breakpoint moves in a region, by its first derivative that is not 0;
+ * still: its first one is but rounding */
+int  trajectory_heads(const struct trajectory *t, const struct area *area, int function, bool still, bool *known);
 /* A slider without mass whose velocity an event has turned round sticks from there on. */
 bool trajectory_slide(struct trajectory *t, const struct guard *guard, mpfr_srcptr off);
-void trajectory_let_go(struct trajectory *t, const struct guard *guard); /* its expression is 0 now: how often */
+/* its switching function is 0 now: how often */
+void trajectory_let_go(struct trajectory *t, const struct guard *guard);
 
 /* ---- impacts.c: impacts, what comes to rest by them, what sticks and what slips ---- */
 

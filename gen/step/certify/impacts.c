@@ -76,7 +76,7 @@ static int place_of_rest(const struct trajectory *t, const struct impact *p)
 
 static int breakpoint_of(const struct trajectory *t, const struct impact_law *impact_law, bool bounces)
 {
-	const struct expression *e = &t->s->expression[impact_law->expression];
+	const struct switching_function *e = &t->s->function[impact_law->function];
 	int b = 0;
 	while (!mpq_equal(e->at[b], impact_law->at))
 		b++;
@@ -95,11 +95,11 @@ static void fill_bound(const struct trajectory *t, int k, struct bound *b)
 {
 	const struct impact *p = &t->s->impact[k];
 	const struct impact_law *impact_law = &p->in[t->when.segment];
-	*b = (struct bound){ .expression = impact_law->expression, .upward = impact_law->upward, .rest = -1,
+	*b = (struct bound){ .expression = impact_law->function, .upward = impact_law->upward, .rest = -1,
 			    .impact_law = impact_law };
 	b->breakpoint = breakpoint_of(t, impact_law, p->bounces);
 	b->restitution = p->bounces ? mpq_get_d(impact_law->restitution) : 0;
-	b->place = trajectory_row_of(t, t->s->expression[impact_law->expression].row);
+	b->place = trajectory_row_of(t, t->s->function[impact_law->function].row);
 	b->jump = rows_of_jumps(t, impact_law->jumps, impact_law->jump);
 	if (!p->bounces)        /* it has no speed */
 		return;
@@ -110,14 +110,14 @@ static void fill_bound(const struct trajectory *t, int k, struct bound *b)
 
 static const struct law *law_of(struct trajectory *t)
 {
-	const bool solution = t->whole->asked.solution, coarse = t->whole->asked.single && !solution;
+	const bool solution = t->full->request.solution, coarse = t->full->request.single && !solution;
 	if (t->law && t->law->segment == t->when.segment)
 		return t->law;
 	if (!t->law)
-		t->chain = no_impact(mpq_get_d(t->whole->h));
+		t->chain = no_impact(mpq_get_d(t->full->h));
 	struct law *m = NEW(struct law);
 	*m = (struct law){ .s = t->s, .segment = t->when.segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
-			   .solution = solution, .h = mpq_get_d(t->whole->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
+			   .solution = solution, .h = mpq_get_d(t->full->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
 			   .brief = coarse ? 0x1p-10 : 0x1p-23, .span = coarse ? 0x1p-8 : 0x1p-10 };
 	m->impact = ARRAY(struct bound, (size_t)m->impacts + 1);
 	for (int k = 0; k < m->impacts; k++)
@@ -176,7 +176,7 @@ static void go_to(const contacts *m, instant *t, int expression, int interval)
 {
 	int now = interval_of(m, t, expression);
 	if (now != interval)
-		trajectory_enter(t, t->region + (interval - now) * t->s->expression[expression].stride);
+		trajectory_enter(t, t->region + (interval - now) * t->s->function[expression].stride);
 }
 
 static void renew(const contacts *m, instant *t)
@@ -187,7 +187,7 @@ static void renew(const contacts *m, instant *t)
 
 static int stride_of(const contacts *m, int expression)
 {
-	return m->s->expression[expression].stride;
+	return m->s->function[expression].stride;
 }
 
 static int is_possible(const contacts *m, int region)
@@ -371,8 +371,8 @@ static void say(instant *t, int status)
 /* What a load that jumps, or an impact, takes out of its interval passes the breakpoint there. */
 static void follow(const contacts *m, instant *t, int jumped)
 {
-	for (int e = 0; e < t->s->expressions; e++) {
-		const struct expression *x = &t->s->expression[e];
+	for (int e = 0; e < t->s->functions; e++) {
+		const struct switching_function *x = &t->s->function[e];
 		for (int way = 1; way;) {
 			const int interval = interval_of(m, t, e);
 			way = interval < x->breaks && trajectory_side(t, e, x->at[interval]) > 0	  ? 1
@@ -387,11 +387,11 @@ static void follow(const contacts *m, instant *t, int jumped)
 
 /* ---- what sticks, rests or slips ---- */
 
-/* The side to which the guard that was met has let an expression go; 0: it has not */
+/* The side to which the guard that was met has let a switching function go; 0: it has not */
 static int side_let_go(const instant *t, int expression)
 {
 	const struct guard *guard = t->event_state->met;
-	return !guard || !guard->release || guard->expression != expression ? 0 : guard->upward ? 1 : -1;
+	return !guard || !guard->release || guard->function != expression ? 0 : guard->upward ? 1 : -1;
 }
 
 /* Whether the speed of a contact is but rounding: what rests has none */
@@ -405,7 +405,7 @@ static bool is_still(const contacts *m, const instant *t, int k)
 static bool is_there(const contacts *m, const instant *t, int expression, int impact)
 {
 	if (impact < 0) {
-		RATIONALS *row = trajectory_row_of(t, t->s->expression[expression].row);
+		RATIONALS *row = trajectory_row_of(t, t->s->function[expression].row);
 		return is_none(t, row);
 	}
 	return !(m->impact[impact].restitution > 0) && touches(m, t, impact) && is_still(m, t, impact);
@@ -414,10 +414,10 @@ static bool is_there(const contacts *m, const instant *t, int expression, int im
 static int find_resting(const contacts *m, const instant *t, resting *found)
 {
 	int count = 0;
-	for (int e = 0; e < t->s->expressions; e++)
-		for (int k = 1; k < t->s->expression[e].breaks && count < MOST; k++) {
+	for (int e = 0; e < t->s->functions; e++)
+		for (int k = 1; k < t->s->function[e].breaks && count < MOST; k++) {
 			const int side = interval_of(m, t, e) - k, impact = impact_resting(t->s, t->when.segment, e, k);
-			if (!is_stick(&t->s->expression[e], k) || side < -1 || side > 1)
+			if (!is_stick(&t->s->function[e], k) || side < -1 || side > 1)
 				continue;
 			if (side == 0 || side == side_let_go(t, e) || is_there(m, t, e, impact))
 				found[count++] = (resting){ .expression = e, .held = k, .impact = impact };
@@ -432,7 +432,7 @@ static int holds_in(const contacts *m, instant *t, int region, int expression)
 	for (int k = 0; k < area->guards; k++) {
 		const struct guard *guard = &area->guard[k];
 		bool known;
-		if (guard->expression != expression || !guard->release)
+		if (guard->function != expression || !guard->release)
 			continue;
 		if (side_let_go(t, expression) == (guard->upward ? 1 : -1))
 			return 0;
@@ -470,7 +470,7 @@ static int is_pressed(const contacts *m, const instant *t, int k)
 		t->event_state->together = true;
 	for (int g = 0; g < t->at->guards; g++) {
 		const struct guard *guard = &t->at->guard[g];
-		if (!guard->release || guard->expression != m->impact[k].expression)
+		if (!guard->release || guard->function != m->impact[k].expression)
 			continue;
 		if (trajectory_sign(t, guard->row, guard->limit, &known) >= 0)
 			return 0;

@@ -14,7 +14,7 @@ long samples_until(const struct requirement *r, mpq_srcptr h); /* below 0: too m
 
 double kept_mass(const struct step *step, int state);       /* momenta: of the coordinate; else 1 */
 bool   is_load_forced(const struct step *step, int column);
-double load_value(const struct wave_of_column *p, double t); /* at t [s] */
+double load_value(const struct forcing_of_column *p, double t); /* at t [s] */
 /* what the step of the errors keeps, by the numbers of `exact` */
 struct step_map *step_map_of(const struct errors *e, const struct step *exact);
 /* from the start, inputs 0; the output is added to `trace`, where there is one, at each sample */

@@ -17,9 +17,9 @@ bool is_lasting(const struct step_map *k, long steps)
 
 /* ---- what a load sustains ---- */
 
-static double complex root_of_wave(const struct wave_of_column *wave, double h)
+static double complex root_of_forcing(const struct forcing_of_column *forcing, double h)
 {
-	return cexp((wave->a + I * (wave->turns ? wave->w : 0)) * h);
+	return cexp((forcing->a + I * (forcing->turns ? forcing->w : 0)) * h);
 }
 
 static void find_defect(const struct step_map *k, double complex root, const double complex *b, const double complex *p,
@@ -41,16 +41,16 @@ static void find_defect(const struct step_map *k, double complex root, const dou
  * load grows as t, or is at a pole */
 static bool sustained(const struct step_map *k, int column, double h, double complex *p, double *defect)
 {
-	const struct wave_of_column *wave = &k->wave[column];
+	const struct forcing_of_column *forcing = &k->forcing[column];
 	const int n = k->n;
 	const size_t cells = (size_t)n * (size_t)n;
-	const double complex root = root_of_wave(wave, h), turn = wave->turns ? cexp(I * wave->p) : 1;
+	const double complex root = root_of_forcing(forcing, h), turn = forcing->turns ? cexp(I * forcing->p) : 1;
 	SCRATCH double complex *A = ARRAY(double complex, cells), *b = ARRAY(double complex, n);
 	SCRATCH double *own = ARRAY(double, n);
 	double largest = 0;
 	for (int i = 0; i < n; i++) {
 		b[i] = turn * (k->load[i * k->columns + column] -
-			       (wave->turns ? I * k->load[i * k->columns + column + 1] : 0));
+			       (forcing->turns ? I * k->load[i * k->columns + column + 1] : 0));
 		p[i] = b[i];
 		for (int j = 0; j < n; j++)
 			A[i * n + j] = (i == j ? root : 0) - k->Phi[i * n + j];
@@ -59,7 +59,7 @@ static bool sustained(const struct step_map *k, int column, double h, double com
 	find_defect(k, root, b, p, own);
 	for (int i = 0; i < n; i++)
 		largest = own[i] <= largest ? largest : own[i];
-	const bool good = wave->power == 0 && isfinite(largest);
+	const bool good = forcing->power == 0 && isfinite(largest);
 	for (int i = 0; i < n && good; i++)
 		defect[i] += own[i] * k->amplitude[column];
 	return good;
@@ -92,13 +92,13 @@ static struct lasting lasting_of(const struct step_map *k, double h)
 	for (int i = 0; i < k->n; i++)
 		start[i] = k->start[i];
 	for (int c = 0, pair; c < k->columns; c += pair) {
-		pair = k->wave[c].turns ? 2 : 1;
+		pair = k->forcing[c].turns ? 2 : 1;
 		if (!sustained(k, c, h, p, l.steady)) {
 			for (int j = 0; j < pair; j++)
 				add_force(&l, c + j);
 			continue;
 		}
-		const double complex turn = pair == 2 ? cexp(I * k->wave[c].p) : 1;
+		const double complex turn = pair == 2 ? cexp(I * k->forcing[c].p) : 1;
 		l.row[c] = turn * (k->direct[c] - (pair == 2 ? I * k->direct[c + 1] : 0));
 		for (int i = 0; i < k->n; i++) {
 			l.row[c] += k->row[i] * p[i];

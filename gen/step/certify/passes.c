@@ -60,7 +60,7 @@ bool trajectory_event_free(struct trajectory *t, const mpfi_t *y, double tau)
 			t->piece.most[i] += t->at->growth[i * t->n + j] * (fabs(from->x[j]) + from->off[j]);
 	}
 	for (int k = 0; k < t->at->guards; k++)
-		if (!t->resting[t->at->guard[k].expression] &&
+		if (!t->resting[t->at->guard[k].function] &&
 		    !is_event_free(t, &t->at->guard[k], from, to, t->piece.most, tau))
 			return false;
 	return true;
@@ -99,7 +99,7 @@ static void expand_guard(struct trajectory *t, const struct guard *guard, int de
 static void clear_none(struct trajectory *t, const struct guard *guard, int degree)
 {
 	double size = fabs(guard->near_limit);
-	if (!t->whole->asked.solution || t->precision < BITS_OF_ONE)
+	if (!t->full->request.solution || t->precision < BITS_OF_ONE)
 		return;
 	for (int m = 0; m <= degree; m++)
 		for (int i = 0; i < t->n; i++)
@@ -149,7 +149,7 @@ static int divide_by_power(struct trajectory *t, int degree, int order, bool fre
 
 static bool is_fresh(const struct trajectory *t, const struct guard *guard)
 {
-	return t->fresh.order[guard->expression] > 0 && guard->upward == t->fresh.back[guard->expression] &&
+	return t->fresh.order[guard->function] > 0 && guard->upward == t->fresh.back[guard->function] &&
 	       !guard->release;
 }
 
@@ -176,13 +176,13 @@ int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const str
 	mpfr_set_d(end, 1.0 + 77 * 0x1p-20, MPFR_RNDN);
 	for (int k = 0; k < t->at->guards && result >= 0; k++) {
 		const struct guard *guard = &t->at->guard[k];
-		if (t->resting[guard->expression] || (result > 0 && trajectory_meets(t, *found, guard)))
+		if (t->resting[guard->function] || (result > 0 && trajectory_meets(t, *found, guard)))
 			continue;
 		int terms = degree;
 		expand_guard(t, guard, degree, tau);
 		clear_none(t, guard, degree);
 		bool fresh = is_fresh(t, guard);
-		int order = fresh ? t->fresh.order[guard->expression] : zeros_of(t, degree);
+		int order = fresh ? t->fresh.order[guard->function] : zeros_of(t, degree);
 		if (order > 0 && degree > order)
 			terms = divide_by_power(t, degree, order, fresh, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
@@ -191,7 +191,7 @@ int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const str
 		    bounces(t, *found)) /* struck with what was found, where it touches then */
 			continue;
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
-			t->resting[guard->expression] = true;   /* let go by no force */
+			t->resting[guard->function] = true;     /* let go by no force */
 			continue;
 		}
 		if (rise == RISE_UNKNOWN) {
@@ -243,7 +243,7 @@ static bool resolve(struct trajectory *t, const struct guard *guard, mpfr_srcptr
 	if (!trajectory_resolve(t, guard, off))
 		return false;
 	trajectory_let_go(t, guard);
-	t->noted.list[t->noted.count - 1].faint = t->fresh.order[guard->expression] == 3;
+	t->noted.list[t->noted.count - 1].faint = t->fresh.order[guard->function] == 3;
 	mpfr_set(t->fresh.off, off, MPFR_RNDU);
 	return true;
 }

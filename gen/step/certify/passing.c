@@ -3,7 +3,7 @@
  * starts one is taken that crosses and that rounding does not lead astray: a second start beside it must pass the same
  * breakpoints and stay close. */
 #include "inner.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "step/regions/guards.h"
 
@@ -161,35 +161,35 @@ static struct moment *all_crossings(const struct ways *w, int *count)
 	return all;
 }
 
-/* What the expression is summed from where the states are largest */
-static double size_of_expression(const struct step *step, const struct reference *r, const struct moment *now)
+/* What the switching function is summed from where the states are largest */
+static double size_of_function(const struct step *step, const struct reference *r, const struct moment *now)
 {
 	const struct region_part *part = now->part;
 	const struct model *model = part ? part->model : step->model;
-	const struct output *row = model->switching->expression[now->passed.expression].row;
+	const struct output *row = model->switching->function[now->passed.function].row;
 	double size = 0;
 	for (int i = 0; i < model->system.states; i++)
 		size += fabs(mpq_get_d(row->state[i])) * largest_of(r, part ? part->state[i] : i);
 	return size;
 }
 
-/* Steps before it, what of the time is after them, and what rounding takes: of the expression as it is summed, by its
- * speed, and of the step */
+/* Steps before it, what of the time is after them, and what rounding takes: of the switching function as it is summed,
+ * by its speed, and of the step */
 static void take_crossing(const struct step *step, struct reference *r, const struct moment *now)
 {
-	bool single = step->model->asked.single;
+	bool single = step->model->request.single;
 	double h = mpq_get_d(step->model->h), speed = now->passed.jumped ? HUGE_VAL : now->passed.speed;
-	double size = now->passed.size + size_of_expression(step, r, now);
-	RATIONAL time = ZERO, whole = ZERO;
+	double size = now->passed.size + size_of_function(step, r, now);
+	RATIONAL time = ZERO, full = ZERO;
 	INTEGER before = INTEGER_ZERO;
 	mpfr_get_q(time, &now->passed.at->left);
-	mpq_div(whole, time, step->model->h);
-	mpz_fdiv_q(before, mpq_numref(whole), mpq_denref(whole));
+	mpq_div(full, time, step->model->h);
+	mpz_fdiv_q(before, mpq_numref(full), mpq_denref(full));
 	ENLARGE(r->crossing, (size_t)r->crossings + 1);
 	r->crossing[r->crossings].step = mpz_get_ui(before);
-	mpq_set_z(whole, before);
-	mpq_mul(whole, whole, step->model->h);
-	mpq_sub(time, time, whole);
+	mpq_set_z(full, before);
+	mpq_mul(full, full, step->model->h);
+	mpq_sub(time, time, full);
 	r->crossing[r->crossings].after = round_rational(time);
 	r->crossing[r->crossings++].unit = ulp_of(fmax(h, size / speed), single);
 }
@@ -225,7 +225,7 @@ static void start_of(const struct step *step, int number, mpq_t *start)
 /* Each state off by a part of itself: off 0, what lies would bounce. */
 static mpq_t *start_beside(const struct step *step, const mpq_t *start)
 {
-	int states = step->branch->system.states, bits = step->model->asked.single ? 18 : BESIDE;
+	int states = step->branch->system.states, bits = step->model->request.single ? 18 : BESIDE;
 	mpq_t *beside = rationals(states);
 	RATIONAL off = ZERO;
 	for (int i = 0; i < states; i++) {
@@ -240,11 +240,11 @@ static mpq_t *start_beside(const struct step *step, const mpq_t *start)
  * and contacts that bounce together */
 static bool blurs(const struct step *step, const struct reference *r, const struct moment *all, int k)
 {
-	bool single = step->model->asked.single, blurred = false;
+	bool single = step->model->request.single, blurred = false;
 	if (k == 0 || !(single || regions_of(step)->impacts > 1) || !(all[k].at > all[k - 1].at))
 		return false;
 	for (int j = k - 1; j >= 0 && !blurred && !(all[j].at < all[k - 1].at); j--) {
-		double size = all[j].passed.size + size_of_expression(step, r, &all[j]);
+		double size = all[j].passed.size + size_of_function(step, r, &all[j]);
 		blurred = all[j].passed.speed > 0 &&
 			  all[k].at - all[j].at < 4 * ulp_of(size / all[j].passed.speed, single);
 	}
@@ -271,10 +271,10 @@ static bool are_close(const struct reference *r, const struct ways *a, const str
 	int count, other;
 	const struct moment *x = all_crossings(a, &count), *z = all_crossings(b, &other);
 	bool close = count == other;
-	double apart = ldexp(GROWTH, -(a->step->model->asked.single ? 18 : BESIDE));
+	double apart = ldexp(GROWTH, -(a->step->model->request.single ? 18 : BESIDE));
 	for (int k = 0; k < count && close; k++)
-		close = !x[k].passed.stands && !(x[k].passed.faint && a->step->model->asked.single) &&
-			x[k].passed.expression == z[k].passed.expression &&
+		close = !x[k].passed.stands && !(x[k].passed.faint && a->step->model->request.single) &&
+			x[k].passed.function == z[k].passed.function &&
 			x[k].passed.breakpoint == z[k].passed.breakpoint && x[k].passed.upward == z[k].passed.upward &&
 			!blurs(a->step, r, x, k) && !is_unlisted(a->step, x, k);
 	for (int i = 0; i < r->states && close; i++) {
@@ -354,6 +354,6 @@ struct reference reference_of_trajectory(const struct step *step)
 		error((struct place){ source_argument("--selftest"), 0 }, NULL,
 		      "--selftest finds no start from which a breakpoint is passed in %lu steps, apart from others and "
 		      "clearly", steps[ROWS - 1]);
-	fill_units(&best, step->model->asked.single);
+	fill_units(&best, step->model->request.single);
 	return best;
 }

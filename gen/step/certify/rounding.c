@@ -27,7 +27,7 @@ int levels(int terms)
  * 64 bits for float, in 128 for double, is off by one of its last for each step */
 static double load_error(const struct errors *e, int column)
 {
-	const struct wave_of_column *p = &e->step_map->wave[column];
+	const struct forcing_of_column *p = &e->step_map->forcing[column];
 	const double phase = ldexp((double)(e->steps + 1) * 7, 1 - phase_bits(e->step));
 	return (2 + 3 * (p->a != 0) + 4 * p->power) * e->unit + phase;
 }
@@ -49,18 +49,18 @@ static struct operand_bound bound_of_operand(const struct errors *e, const struc
 /* Of a load with refreshes the factor is rotated: of cosine and sine together */
 static double size_of_factor(const struct errors *e, const struct assignment *a, const struct product *p)
 {
-	const struct table *table = e->step->branch->whole;
+	const struct table *table = e->step->branch->full;
 	int first;
 	if (p->operand.kind != OPERAND_LOAD)
 		return fabs(p->factor->value);
 	const struct load *load =
 		&e->step->branch->system.load[load_of_column(&e->step->branch->system, p->operand.index, &first)];
-	const int partner = oscillates(load->wave) ? first + ((p->operand.index - first) ^ 1) : p->operand.index;
+	const int partner = oscillates(load->forcing) ? first + ((p->operand.index - first) ^ 1) : p->operand.index;
 	return hypot(table->load[a->target * table->columns + p->operand.index].value,
 		     table->load[a->target * table->columns + partner].value);
 }
 
-static void reckon(const struct errors *e, const struct assignment *a, const double *whole)
+static void reckon(const struct errors *e, const struct assignment *a, const double *full)
 {
 	const struct program *program = e->step->program;
 	const int roundings = 2 + (program->loops ? a->terms + 4 : levels(a->terms)) + 3 * program->compensated;
@@ -72,7 +72,7 @@ static void reckon(const struct errors *e, const struct assignment *a, const dou
 		error += factor * b.error;
 	}
 	error += roundings * e->unit * size + (a->terms + 4) * e->tiny;
-	double value = whole[a->target];
+	double value = full[a->target];
 	if (program->in_order)
 		value = e->size[a->target] + size;
 	if (a->added)
@@ -147,7 +147,7 @@ static void reckon_start(const struct errors *e, double *error)
 		for (int c = 0; c < k->columns && e->step->forced; c++)
 			if (is_load_forced(e->step, c))
 				size += fabs(mpq_get_d(e->step->forced->exact[i * k->columns + c]) *
-					     load_value(&k->wave[c], 0)) *
+					     load_value(&k->forcing[c], 0)) *
 					(8 + levels(k->columns));
 		for (int j = 0; j < k->n && modal; j++)
 			size += fabs(modal->to[i * k->n + j] * mpq_get_d(e->step->model->initial[j])) * (k->n / 8 + 6);
@@ -282,12 +282,13 @@ double needed_error(const struct requirement *r, double largest)
 
 struct errors errors_of(const struct step *step, const struct requirement *r)
 {
-	const bool single = step->model->asked.single;
+	const bool single = step->model->request.single;
 	return (struct errors){ .step = step,
 				.r = r,
 				.steps = samples_until(r, step->model->h),
 				.unit = single ? 0x1p-24 : 0x1p-53,
-				.tiny = step->linear.rest ? (single ? 1e-35 : 1e-290) : single ? 0x1p-149 : 0x1p-1074 };
+				.tiny = step->linear.flush ? (single ? 1e-35 : 1e-290) : single ? 0x1p-149
+				: 0x1p-1074 };
 }
 
 double largest_of_output(const struct step *exact, const struct requirement *r)

@@ -38,7 +38,7 @@ int trajectory_sign(const struct trajectory *t, const mpq_t *row, mpq_srcptr les
 		mpfi_sub_q(value, value, less);
 	int sign = mpfr_sgn(&value->left) > 0 ? 1 : mpfr_sgn(&value->right) < 0 ? -1 : 0;
 	*known = sign != 0 || (mpfr_zero_p(&value->left) && mpfr_zero_p(&value->right)) ||
-		 (t->whole->asked.solution && t->precision >= BITS_OF_ONE &&
+		 (t->full->request.solution && t->precision >= BITS_OF_ONE &&
 		  trajectory_is_none(t, value, trajectory_size(t, row) + (less ? fabs(mpq_get_d(less)) : 0)));
 	return sign;
 }
@@ -73,11 +73,11 @@ bool trajectory_unknown(struct trajectory *t, const char *what)
 
 /* ---- where what was held goes ---- */
 
-/* The side to which an expression on a breakpoint moves in a region, by its first derivative that is not 0; still: its
- * first one is but rounding */
-int trajectory_heads(const struct trajectory *t, const struct area *area, int expression, bool still, bool *known)
+/* The side to which a switching function on a breakpoint moves in a region, by its first derivative that is not 0;
+ * still: its first one is but rounding */
+int trajectory_heads(const struct trajectory *t, const struct area *area, int function, bool still, bool *known)
 {
-	mpq_t *row = trajectory_row_of(t, t->s->expression[expression].row);
+	mpq_t *row = trajectory_row_of(t, t->s->function[function].row);
 	int sign = 0;
 	*known = true;
 	for (int k = 0; k < t->n && sign == 0 && *known; k++) {
@@ -91,17 +91,17 @@ int trajectory_heads(const struct trajectory *t, const struct area *area, int ex
 	return sign;
 }
 
-/* How often an expression that was let go has the value 0 where it is: with its slope, and for a contact, whose force
- * was 0, with its acceleration */
+/* How often a switching function that was let go has the value 0 where it is: with its slope, and for a contact, whose
+ * force was 0, with its acceleration */
 static int order_of(struct trajectory *t, const struct guard *guard)
 {
 	bool known;
 	if (!guard->release)
 		return 0;
-	if (impact_resting(t->s, t->when.segment, guard->expression,
-			   interval_of(t->s, t->region, guard->expression) - (guard->upward ? 1 : -1)) >= 0)
+	if (impact_resting(t->s, t->when.segment, guard->function,
+			   interval_of(t->s, t->region, guard->function) - (guard->upward ? 1 : -1)) >= 0)
 		return 3;
-	RATIONALS *row = trajectory_row_of(t, t->s->expression[guard->expression].row);
+	RATIONALS *row = trajectory_row_of(t, t->s->function[guard->function].row);
 	RATIONALS *slope = trajectory_times(t, row, t->at->A);
 	int sign = trajectory_sign(t, slope, NULL, &known);
 	return known && sign != 0 ? 0 : 2;
@@ -109,8 +109,8 @@ static int order_of(struct trajectory *t, const struct guard *guard)
 
 void trajectory_let_go(struct trajectory *t, const struct guard *guard)
 {
-	t->fresh.order[guard->expression] = order_of(t, guard);
-	t->fresh.back[guard->expression] = !guard->upward;
+	t->fresh.order[guard->function] = order_of(t, guard);
+	t->fresh.back[guard->function] = !guard->upward;
 }
 
 /* Of sliders without mass one that would slide back where it is; -1: none does, -2: not known. What is 0, as all that
@@ -120,8 +120,8 @@ static int slides_back(const struct trajectory *t, const struct guard *met, cons
 	for (int k = 0; k < t->at->guards; k++) {
 		const struct guard *guard = &t->at->guard[k];
 		bool known;
-		if (!guard->release || is_stick(&t->s->expression[guard->expression],
-					       interval_of(t->s, t->region, guard->expression)))
+		if (!guard->release || is_stick(&t->s->function[guard->function],
+					       interval_of(t->s, t->region, guard->function)))
 			continue;
 		int sign = trajectory_sign(t, guard->row, NULL, &known);
 		bool none = known && sign == 0;
@@ -133,7 +133,7 @@ static int slides_back(const struct trajectory *t, const struct guard *met, cons
 		if (!known)
 			return -2;
 		if (sign > 0)
-			return guard->expression;
+			return guard->function;
 	}
 	return -1;
 }
@@ -145,9 +145,9 @@ bool trajectory_slide(struct trajectory *t, const struct guard *guard, mpfr_srcp
 	if (t->s->sliders == 0)
 		return true;
 	trajectory_hold(t);
-	gone = ARRAY(const struct guard *, t->s->expressions);
+	gone = ARRAY(const struct guard *, t->s->functions);
 	int count = 0, back = slides_back(t, guard, &release);
-	for (; back >= 0 && count < t->s->expressions; count++) {
+	for (; back >= 0 && count < t->s->functions; count++) {
 		gone[count] = release;
 		if (off)
 			trajectory_note_plain(t, back, release->breakpoint, release->upward, off);

@@ -26,7 +26,7 @@ bool is_load_forced(const struct step *step, int column)
 static void keep_states(const struct step *step, const struct step *exact, const struct output *output,
 			struct step_map *k)
 {
-	const struct table *table = exact->branch->whole;
+	const struct table *table = exact->branch->full;
 	const int n = k->n;
 	for (int i = 0; i < n; i++) {
 		for (int j = 0; j < n; j++)
@@ -63,28 +63,28 @@ static void keep_modes(const struct step *exact, int o, struct step_map *k)
 
 /* ---- loads ---- */
 
-static struct wave_of_column wave_of_column(const struct linear *system, int column)
+static struct forcing_of_column forcing_of_column(const struct linear *system, int column)
 {
 	int first;
 	const struct load *load = &system->load[load_of_column(system, column, &first)];
-	const bool turns = oscillates(load->wave);
-	return (struct wave_of_column){ .power = (column - first) / (turns ? 2 : 1),
+	const bool turns = oscillates(load->forcing);
+	return (struct forcing_of_column){ .power = (column - first) / (turns ? 2 : 1),
 					.turns = turns,
 					.sine = turns && (column - first) % 2,
-					.a = mpq_get_d(load->wave->a),
-					.w = mpq_get_d(load->wave->w),
-					.p = mpq_get_d(load->wave->p) };
+					.a = mpq_get_d(load->forcing->a),
+					.w = mpq_get_d(load->forcing->w),
+					.p = mpq_get_d(load->forcing->p) };
 }
 
-static struct wave_of_column *waves_of_columns(const struct linear *system, int columns)
+static struct forcing_of_column *forcings_of_columns(const struct linear *system, int columns)
 {
-	struct wave_of_column *wave = ARRAY(struct wave_of_column, columns);
+	struct forcing_of_column *forcing = ARRAY(struct forcing_of_column, columns);
 	for (int c = 0; c < columns; c++)
-		wave[c] = wave_of_column(system, c);
-	return wave;
+		forcing[c] = forcing_of_column(system, c);
+	return forcing;
 }
 
-double load_value(const struct wave_of_column *p, double t)
+double load_value(const struct forcing_of_column *p, double t)
 {
 	double value = p->a != 0 ? exp(p->a * t) : 1;
 	if (p->turns)
@@ -95,7 +95,7 @@ double load_value(const struct wave_of_column *p, double t)
 }
 
 /* The largest of |t^k e^{a t}| up to `end` */
-static double largest_load(const struct wave_of_column *p, double end)
+static double largest_load(const struct forcing_of_column *p, double end)
 {
 	const double peak = p->a < 0 ? -p->power / p->a : end, t = peak < end ? peak : end;
 	return fmax(pow(t, p->power) * exp(p->a * t), p->power ? 0 : 1);
@@ -109,7 +109,7 @@ static void keep_forced(const struct step *step, struct step_map *k)
 			const double part = is_load_forced(step, c)
 						    ? mpq_get_d(step->forced->exact[i * k->columns + c])
 						    : 0;
-			k->start[i] -= part * load_value(&k->wave[c], 0);
+			k->start[i] -= part * load_value(&k->forcing[c], 0);
 			k->direct[c] += k->row[i] * part;
 		}
 }
@@ -133,7 +133,7 @@ static void bound_operands(const struct errors *e, struct step_map *k)
 	const struct linear *system = &e->step->branch->system;
 	const double end = mpq_get_d(e->r->until) + mpq_get_d(e->step->model->h);
 	for (int c = 0; c < k->columns; c++)
-		k->amplitude[c] = largest_load(&k->wave[c], end) * (1 + 1e-9);
+		k->amplitude[c] = largest_load(&k->forcing[c], end) * (1 + 1e-9);
 	for (int i = 0, c = 0; i < system->inputs; i++)
 		for (int j = 0; j <= system->input[i].hold; j++, c++)
 			k->most[c] = mpq_get_d(e->r->most[i]) * (1 + 1e-15);
@@ -175,7 +175,7 @@ struct step_map *step_map_of(const struct errors *e, const struct step *exact)
 	k->amplitude = ARRAY(double, columns);
 	k->most = ARRAY(double, inputs);
 	k->size = ARRAY(double, n);
-	k->wave = waves_of_columns(&step->branch->system, k->columns);
+	k->forcing = forcings_of_columns(&step->branch->system, k->columns);
 	if (step->modal)
 		keep_modes(exact, e->r->output, k);
 	else
@@ -223,7 +223,7 @@ struct extent walk_loads(long steps, double h, const struct spread *spread, stru
 		x[i] = k->start[i];
 	for (long m = 0; m <= steps; m++) {
 		for (int c = 0; c < k->columns; c++)
-			z[c] = load_value(&k->wave[c], (double)m * h);
+			z[c] = load_value(&k->forcing[c], (double)m * h);
 		for (int i = 0; i < k->n; i++) {
 			k->size[i] = fmax(k->size[i], fabs(x[i]));
 			largest = fmax(largest, fabs(x[i]));
@@ -383,7 +383,7 @@ static int segment_at(const struct linear *system, mpq_srcptr t)
 
 static bool note_course(const struct step *step, const struct layout *place, const mpfr_t *x, struct course *c, int k)
 {
-	int states = step->branch->system.states, columns = step->branch->whole->columns;
+	int states = step->branch->system.states, columns = step->branch->full->columns;
 	bool finite = true;
 	REAL sum = WITH_BITS(BITS);
 	for (int i = 0; i < c->rows; i++) {
@@ -484,8 +484,8 @@ static bool add_powers_of_phi(const struct step *step, struct course *c)
 		}
 		for (int i = 0; i < n; i++)
 			for (int k = 0; k < n; k++)
-				for (int j = 0; j < n && !step->branch->whole->Phi[i * n + k].zero; j++)
-					next[i * n + j] += step->branch->whole->Phi[i * n + k].value * power[k * n + j];
+				for (int j = 0; j < n && !step->branch->full->Phi[i * n + k].zero; j++)
+					next[i * n + j] += step->branch->full->Phi[i * n + k].value * power[k * n + j];
 		double *swap = power;
 		power = next;
 		next = swap;
@@ -521,7 +521,7 @@ bool make_course(const struct step *step, struct course *c)
 					    .rows = (int)step_map,
 					    .written = relative ? rounded_rows(step->model) : NULL,
 					    .y = ARRAY(double, rows *step_map),
-					    .z = ARRAY(double, rows *(size_t)step->branch->whole->columns),
+					    .z = ARRAY(double, rows *(size_t)step->branch->full->columns),
 					    .segment = ARRAY(int, rows),
 					    .largest = ARRAY(double, step_map) };
 		good = follow(step, &place, &followed);

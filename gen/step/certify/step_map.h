@@ -6,7 +6,7 @@
 
 #include "base/base.h"
 
-struct wave_of_column {             /* t^power e^{a t} cos or sin(w t + p); without waves cos(p) = 1 */
+struct forcing_of_column {          /* t^power e^{a t} cos or sin(w t + p); without forcing terms cos(p) = 1 */
 	int power;
 	bool turns, sine;
 	double a, w, p;
@@ -16,7 +16,7 @@ struct step_map {                   /* the step over the state as it is kept: y+
 	double *Phi, *load, *input, *start;
 	double *row, *direct, *feed[2]; /* of the output: y; z; u and u' */
 	double *scale;              /* the state is in these units, powers of 2: those in which it is balanced */
-	struct wave_of_column *wave; /* per load column */
+	struct forcing_of_column *forcing; /* per load column */
 	double *amplitude;          /* per load column: its largest size, of cosine and sine together */
 	double *most;               /* per input column */
 	double *size;               /* per state: the largest that it may become */

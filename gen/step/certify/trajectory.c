@@ -11,20 +11,20 @@
 /* ---- a piece ---- */
 
 /* The length of the piece that begins at base, up to `target` at most; whole: it is one of the grid */
-static void piece_at(struct trajectory *t, mpq_srcptr target, mpq_ptr tau, bool *whole)
+static void piece_at(struct trajectory *t, mpq_srcptr target, mpq_ptr tau, bool *full)
 {
 	mpq_srcptr d = t->at->flow->piece;
 	RATIONAL pieces = ZERO, end = ZERO;
 	INTEGER next = INTEGER_ZERO;
 	mpq_div(pieces, t->base, d);
-	*whole = mpz_cmp_ui(mpq_denref(pieces), 1) == 0;
+	*full = mpz_cmp_ui(mpq_denref(pieces), 1) == 0;
 	mpz_fdiv_q(next, mpq_numref(pieces), mpq_denref(pieces));
 	mpz_add_ui(next, next, 1);
 	mpq_set_z(pieces, next);
 	mpq_mul(end, pieces, d);
 	if (mpq_cmp(end, target) > 0) {
 		mpq_set(end, target);
-		*whole = false;
+		*full = false;
 	}
 	mpq_sub(tau, end, t->base);
 }
@@ -51,26 +51,26 @@ static void step_on_grid(struct trajectory *t, mpfi_t *y)
 	keep(t, y, t->grid.slot[power]);
 }
 
-static void arrive(struct trajectory *t, mpq_srcptr tau, bool whole, const mpfi_t *y)
+static void arrive(struct trajectory *t, mpq_srcptr tau, bool full, const mpfi_t *y)
 {
 	keep(t, y, t->x);
 	mpq_add(t->base, t->base, tau);
 	t->piece.at_once = 0;
 	t->grid.pieces++;
-	for (int e = 0; e < t->s->expressions; e++)
+	for (int e = 0; e < t->s->functions; e++)
 		t->fresh.order[e] = 0;
-	t->grid.met = t->grid.met && whole;
-	if (!whole)
+	t->grid.met = t->grid.met && full;
+	if (!full)
 		trajectory_loads(t);
 }
 
 static bool move(struct trajectory *t, mpq_srcptr target)
 {
-	bool whole;
+	bool full;
 	const struct guard *guard = NULL;
 	RATIONAL tau = ZERO;
-	piece_at(t, target, tau, &whole);
-	if (whole) {
+	piece_at(t, target, tau, &full);
+	if (full) {
 		step_on_grid(t, t->y);
 		if (trajectory_event_free(t, t->y, mpq_get_d(tau))) {
 			arrive(t, tau, true, t->y);
@@ -80,10 +80,10 @@ static bool move(struct trajectory *t, mpq_srcptr target)
 	INTERVAL at = OVER_BITS(t->precision);
 	int degree = stream_expand(t->at->flow, t->x, tau, &t->piece.room);
 	int found = trajectory_first(t, degree, tau, &guard, at);
-	if (found == 0 && !whole)
+	if (found == 0 && !full)
 		stream_sum(t->at->flow, &t->piece.room, degree, t->piece.one, t->y);
 	if (found == 0)
-		arrive(t, tau, whole, t->y);
+		arrive(t, tau, full, t->y);
 	return found == 0 || (found > 0 && trajectory_pass(t, guard, degree, tau, at));
 }
 
@@ -131,17 +131,17 @@ static void take_start(struct trajectory *t, const mpq_t *initial)
 	mpq_t *exact = rationals(t->n);
 	for (int l = 0; l < t->system->loads; l++) {
 		const struct load *load = &t->system->load[l];
-		rational = rational && mpq_sgn(load->wave->p) == 0;
+		rational = rational && mpq_sgn(load->forcing->p) == 0;
 		if (t->layout.load[l] >= 0)     /* t^0 e^0 cos 0 */
 			mpq_set_ui(exact[t->layout.load[l]], 1, 1);
 	}
 	for (int i = 0; i < t->layout.states; i++)
 		mpq_set(exact[i], initial[t->part ? t->part->state[i] : i]);
 	for (int i = 0; i < t->system->inputs; i++) {
-		int param = (t->part ? t->part->input[i] : i) - t->whole->spec->count.inputs;
+		int param = (t->part ? t->part->input[i] : i) - t->full->spec->count.inputs;
 		mpq_set_ui(exact[t->layout.input[i]], 1, 1);
-		if (param >= 0 && t->whole->params.held)
-			mpq_set(exact[t->layout.input[i]], t->whole->params.held->nominal[param]);
+		if (param >= 0 && t->full->params.held)
+			mpq_set(exact[t->layout.input[i]], t->full->params.held->nominal[param]);
 		if (t->system->input[i].hold) {
 			mpq_inv(exact[t->layout.input[i] + 1], t->model->h);
 			mpq_neg(exact[t->layout.input[i] + 1], exact[t->layout.input[i] + 1]);
@@ -160,9 +160,9 @@ static void make_room(struct trajectory *t)
 	t->A = ARRAY(mpq_t *, s->systems);
 	t->flow = ARRAY(struct stream *, s->systems);
 	t->growth = ARRAY(double *, s->systems);
-	t->resting = ARRAY(bool, s->expressions);
-	t->fresh.order = ARRAY(int, s->expressions);
-	t->fresh.back = ARRAY(bool, s->expressions);
+	t->resting = ARRAY(bool, s->functions);
+	t->fresh.order = ARRAY(int, s->functions);
+	t->fresh.back = ARRAY(bool, s->functions);
 	t->x = enclosures(t->n, t->precision);
 	t->y = enclosures(t->n, t->precision);
 	for (int k = 0; k <= TRAJECTORY_SLOTS; k++)
@@ -179,20 +179,20 @@ static void make_room(struct trajectory *t)
 	mpfr_set_ui(t->piece.one, 1, MPFR_RNDN);
 }
 
-struct trajectory *trajectory_start(const struct model *whole, const struct region_part *part, const mpq_t *initial,
+struct trajectory *trajectory_start(const struct model *full, const struct region_part *part, const mpq_t *initial,
 			      int precision)
 {
 	struct trajectory *t = NEW(struct trajectory);
-	t->whole = whole;
+	t->full = full;
 	t->part = part;
-	t->model = part ? part->model : whole;
+	t->model = part ? part->model : full;
 	t->s = t->model->switching;
 	t->system = &t->s->system[0];
 	t->precision = precision;
 	t->layout = layout_of_columns(t->system);
 	t->n = t->layout.size;
-	t->when.segments = whole->system.segments;
-	t->when.change = whole->system.change;
+	t->when.segments = full->system.segments;
+	t->when.change = full->system.change;
 	make_room(t);
 	take_start(t, initial);
 	while (t->when.segment + 1 < t->when.segments && mpq_sgn(t->when.change[t->when.segment]) <= 0)

@@ -14,7 +14,7 @@ struct near {                       /* x in double, and how far off it may be */
 	double *x, *off;
 };
 struct guard {                      /* a row over x that must not become greater than its limit */
-	int expression, breakpoint, leads;
+	int function, breakpoint, leads;
 	bool upward;
 	bool release;               /* its value is a force, which then lets go what it held */
 	int impact;                 /* that begins there; -1: none */
@@ -46,7 +46,7 @@ struct trajectory_piece {
 	int at_once;
 };
 struct trajectory_fresh {           /* let go at base, but for so much [s]: 0 there with their first derivatives */
-	int *order;                 /* per expression; 0: it was not */
+	int *order;                 /* per switching function; 0: it was not */
 	bool *back;                 /* which way it would come back */
 	mpfr_t off, most_off;
 };
@@ -57,10 +57,10 @@ struct trajectory_time {
 struct trajectory_list {            /* of crossings */
 	int count, most;            /* most: 0: any number */
 	struct passed *list;
-	double speed, size;         /* of the expression that was met last, as in struct passed; 0: a load jumps */
+	double speed, size; /* of the switching function that was met last, as in struct passed; 0: a load jumps */
 };
 struct trajectory {
-	const struct model *whole, *model;
+	const struct model *full, *model;
 	const struct region_part *part; /* NULL: both are one */
 	const struct switching *s;
 	const struct linear *system; /* the first: coordinates, loads and inputs are those of all */
@@ -72,7 +72,7 @@ struct trajectory {
 	double **growth;
 	struct area *area, *at;     /* per region; where it is */
 	int region;
-	bool *resting;              /* per expression: it stands on a breakpoint, exactly, while the region stays */
+	bool *resting; /* per switching function: it stands on a breakpoint, exactly, while the region stays */
 	mpq_t base;                 /* [s] */
 	mpfi_t *x, *y;              /* x at that time, in the equations of `at` */
 	mpq_t *exact;               /* x at the start; NULL: it is not rational */
@@ -109,11 +109,11 @@ bool trajectory_event_free(struct trajectory *t, const mpfi_t *y, double tau); /
 int  trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at);
 bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree, mpq_srcptr tau, mpfi_srcptr at);
 
-/* ---- noted.c: the list of crossings, and where expressions stand ---- */
+/* ---- noted.c: the list of crossings, and where switching functions stand ---- */
 
 /* of e - at: 1 above, -1 below; 0: not told apart */
-int  trajectory_side(const struct trajectory *t, int expression, mpq_srcptr at);
+int  trajectory_side(const struct trajectory *t, int function, mpq_srcptr at);
 void trajectory_note(struct trajectory *t, const struct guard *guard, mpfr_srcptr off);
-void trajectory_note_plain(struct trajectory *t, int expression, int breakpoint, bool upward, mpfr_srcptr off);
+void trajectory_note_plain(struct trajectory *t, int function, int breakpoint, bool upward, mpfr_srcptr off);
 
 #endif

@@ -7,25 +7,25 @@
 
 /* ---- what is lost with modes ---- */
 
-struct loss {                       /* of one output, summed over modes */
+struct mode_error {                 /* of one output, summed over modes */
 	long steps;
 	bool lasts;                 /* too long to be walked through: modes are not traced, their bounds are added */
 	double *trace, **input;     /* at each sample; m steps after a sample of an input */
 	double slack;               /* how far what is found may be off; of long runs a bound of all that is lost */
 };
 
-static void add_lasting_loss(const struct step *step, const struct step_map *k, const struct spread *spread,
-			     struct loss *loss)
+static void add_lasting_mode_error(const struct step *step, const struct step_map *k, const struct spread *spread,
+			     struct mode_error *mode_error)
 {
 	const struct linear *system = &step->branch->system;
 	const double h = mpq_get_d(step->model->h);
-	loss->slack += lasting_output(k, spread, h) + slopes_of_inputs(system, k, h);
+	mode_error->slack += lasting_output(k, spread, h) + slopes_of_inputs(system, k, h);
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
-		loss->slack += lasting_input(system, spread, k, i, c);
+		mode_error->slack += lasting_input(system, spread, k, i, c);
 }
 
 /* One more mode is dropped: `step` is that of what is lost with it. */
-static bool add_loss(const struct step *step, const struct requirement *r, struct loss *loss)
+static bool add_mode_error(const struct step *step, const struct requirement *r, struct mode_error *mode_error)
 {
 	const struct linear *system = &step->branch->system;
 	const struct errors e = errors_of(step, r);
@@ -35,71 +35,72 @@ static bool add_loss(const struct step *step, const struct requirement *r, struc
 	const struct spread spread = spread_of(k->n, k->Phi, e.steps + 1);
 	if (!spread.known)
 		return false;
-	if (loss->lasts) {
-		add_lasting_loss(step, k, &spread, loss);
+	if (mode_error->lasts) {
+		add_lasting_mode_error(step, k, &spread, mode_error);
 		return true;
 	}
-	loss->slack += walk_loads(e.steps, mpq_get_d(step->model->h), &spread, k, loss->trace).slack;
+	mode_error->slack += walk_loads(e.steps, mpq_get_d(step->model->h), &spread, k, mode_error->trace).slack;
 	for (int i = 0, c = 0; i < system->inputs; c += system->input[i++].hold + 1)
-		loss->slack += sum_of_input(system, e.steps, k, i, c, loss->input[i]) *
+		mode_error->slack += sum_of_input(system, e.steps, k, i, c, mode_error->input[i]) *
 			       (1e-9 + spread.slack * (double)e.steps);
-	loss->slack += slopes_of_inputs(system, k, mpq_get_d(step->model->h));
+	mode_error->slack += slopes_of_inputs(system, k, mpq_get_d(step->model->h));
 	return true;
 }
 
-static double size_of_loss(const struct loss *loss, const struct linear *system, const struct requirement *r)
+static double size_of_mode_error(const struct mode_error *mode_error, const struct linear *system,
+				 const struct requirement *r)
 {
 	double most = 0, inputs = 0;
-	for (long m = 0; m <= loss->steps; m++)
-		most = fmax(most, fabs(loss->trace[m]));
+	for (long m = 0; m <= mode_error->steps; m++)
+		most = fmax(most, fabs(mode_error->trace[m]));
 	for (int i = 0; i < system->inputs; i++) {
 		double sum = 0;
-		for (long m = 0; m < loss->steps; m++)
-			sum += fabs(loss->input[i][m]);
+		for (long m = 0; m < mode_error->steps; m++)
+			sum += fabs(mode_error->input[i][m]);
 		inputs += sum * mpq_get_d(r->most[i]);
 	}
-	return (most + inputs) * (1 + 1e-9) + loss->slack;
+	return (most + inputs) * (1 + 1e-9) + mode_error->slack;
 }
 
-static struct loss no_loss(const struct linear *system, long steps)
+static struct mode_error no_mode_error(const struct linear *system, long steps)
 {
-	struct loss loss = { .steps = steps,
+	struct mode_error mode_error = { .steps = steps,
 			     .trace = ARRAY(double, steps + 1),
 			     .input = ARRAY(double *, system->inputs) };
 	for (int i = 0; i < system->inputs; i++)
-		loss.input[i] = ARRAY(double, steps + 1);
-	return loss;
+		mode_error.input[i] = ARRAY(double, steps + 1);
+	return mode_error;
 }
 
-static void loss_free(const struct loss *loss, const struct linear *system)
+static void mode_error_free(const struct mode_error *mode_error, const struct linear *system)
 {
-	discard(loss->trace);
+	discard(mode_error->trace);
 	for (int i = 0; i < system->inputs; i++)
-		discard(loss->input[i]);
+		discard(mode_error->input[i]);
 }
 
-struct building_loss { struct model *error; struct step *step; };
+struct building_mode_error { struct model *error; struct step *step; };
 
-static void build_loss(void *context)
+static void build_mode_error(void *context)
 {
-	struct building_loss *b = context;
+	struct building_mode_error *b = context;
 	b->error->written = b->error;
-	b->error->asked.form = FORM_DIRECT;
-	b->error->asked.refresh = b->error->asked.rows = 1;
-	b->error->asked.batch = b->error->asked.selftest = false;
+	b->error->request.form = FORM_DIRECT;
+	b->error->request.refresh = b->error->request.rows = 1;
+	b->error->request.batch = b->error->request.selftest = false;
 	b->step = step_build(b->error);
 	if (!b->step)
 		abandon();
 }
 
 /* What is lost with one mode, as a step in double; NULL: it is not found */
-static struct step *step_of_loss(struct modes *modes, int mode, bool static_correction)
+static struct step *step_of_mode_error(struct modes *modes, int mode, bool static_correction)
 {
 	SCRATCH bool *kept = ARRAY(bool, modes->count);
 	for (int i = 0; i < modes->count; i++)
 		kept[i] = i != mode;
-	struct building_loss b = { .error = modes_dropped(modes, kept, static_correction) };
-	return b.error && silent_guard(build_loss, &b) ? b.step : NULL;
+	struct building_mode_error b = { .error = modes_dropped(modes, kept, static_correction) };
+	return b.error && silent_guard(build_mode_error, &b) ? b.step : NULL;
 }
 
 double *truncation_errors_of(struct modes *modes, const int *order, bool static_correction, const struct requirement *r)
@@ -110,13 +111,13 @@ double *truncation_errors_of(struct modes *modes, const int *order, bool static_
 	const struct step_map shape = { .n = 2, .columns = load_columns(system) };
 	bool good = steps >= 0;
 	const bool lasts = good && is_lasting(&shape, steps);
-	struct loss loss = no_loss(system, good && !lasts ? steps : 0);
-	loss.lasts = lasts;
+	struct mode_error mode_error = no_mode_error(system, good && !lasts ? steps : 0);
+	mode_error.lasts = lasts;
 	for (int c = modes->count - 1; c >= 0; c--) {
-		const struct step *step = good ? step_of_loss(modes, order[c], static_correction) : NULL;
-		good = step && add_loss(step, r, &loss);
-		lost[c] = good ? size_of_loss(&loss, system, r) : HUGE_VAL;
+		const struct step *step = good ? step_of_mode_error(modes, order[c], static_correction) : NULL;
+		good = step && add_mode_error(step, r, &mode_error);
+		lost[c] = good ? size_of_mode_error(&mode_error, system, r) : HUGE_VAL;
 	}
-	loss_free(&loss, system);
+	mode_error_free(&mode_error, system);
 	return lost;
 }

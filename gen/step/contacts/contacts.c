@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Impacts, contacts at rest and dry friction beside a Taylor series. What is held is an expression in an interval
- * between two equal breakpoints: of friction its velocity, of a contact at rest the guard of its impacts. The force
- * that holds it is a sequence like others: what makes the rate of its velocity 0, of the accelerations without it,
- * which are sequences too. Where several act on each other, each combination of those that hold has its own. */
+/* Impacts, contacts at rest and dry friction beside a Taylor series. What is held is a switching function in an
+ * interval between two equal breakpoints: of friction its velocity, of a contact at rest the guard of its impacts. The
+ * force that holds it is a sequence like others: what makes the rate of its velocity 0, of the accelerations without
+ * it, which are sequences too. Where several act on each other, each combination of those that hold has its own. */
 #include "model/contacts/friction.h"
 #include "model/contacts/contacts.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "series_contacts.h"
 
@@ -15,14 +15,14 @@
 static struct division divide_made(struct sequencing *w, const struct form *form, mpq_ptr factor)
 {
 	struct division division = divide_form(w, form, factor);
-	if (w->x->expression[division.expression].sequence == NONE) {
-		int made = sequence_of_form(w, w->x->expression[division.expression].form);
-		w->x->expression[division.expression].sequence = made;
+	if (w->x->function[division.function].sequence == NONE) {
+		int made = sequence_of_form(w, w->x->function[division.function].form);
+		w->x->function[division.function].sequence = made;
 	}
 	return division;
 }
 
-/* The guard as it was written: where it rises or falls to its breakpoint; *factor: of the expression */
+/* The guard as it was written: where it rises or falls to its breakpoint; *factor: of the switching function */
 static struct division divide_guard(struct sequencing *w, const struct impact *impact, mpq_ptr factor)
 {
 	const enum comparison comparison = impact->when->guard->comparison;
@@ -224,12 +224,12 @@ static void make_hold(struct constraints *all, int index)
 	struct division d = h->node ? divide_made(w, h->velocity, factor)
 				    : divide_guard(w, &model->contacts.impact[h->impact], factor);
 	for (int i = 0; i < index; i++)
-		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
+		if (all->c->hold[i].function == d.function && all->c->hold[i].breakpoint == d.breakpoint)
 			report_held_twice(h->node ? h->node->at : model->contacts.impact[h->impact].when->at);
-	hold->expression = d.expression;
+	hold->function = d.function;
 	hold->breakpoint = d.breakpoint;
 	hold->above = d.above;
-	add_twin(&w->x->expression[d.expression], d.breakpoint);
+	add_twin(&w->x->function[d.function], d.breakpoint);
 }
 
 /* A force that may become negative counts as 0 there. */
@@ -265,14 +265,14 @@ static void make_slip(struct constraints *all, int index)
 	const struct drag *drag = &w->step->model->contacts.drag[h->drag];
 	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
 	h->slips = new_sequence(w, (struct sequence){
-		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .expression = hold->expression,
+		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .function = hold->function,
 		.breakpoint = hold->breakpoint, .a = hold->above ? force : back, .b = hold->above ? back : force });
 }
 
 static int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other)
 {
 	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_HOLD, .state = NONE,
-						  .expression = hold->expression, .breakpoint = hold->breakpoint,
+						  .function = hold->function, .breakpoint = hold->breakpoint,
 						  .a = held, .b = other });
 }
 
@@ -392,15 +392,15 @@ static void make_force(struct constraints *all, int index)
 
 /* ---- what the search of events looks at ---- */
 
-static int watch(struct sequencing *w, int sequence, bool whole)
+static int watch(struct sequencing *w, int sequence, bool full)
 {
 	struct contacts *c = w->x->contacts;
 	for (int i = 0; i < c->watches; i++)
 		if (c->watch[i].sequence == sequence) {
-			c->watch[i].whole |= whole;
+			c->watch[i].full |= full;
 			return i;
 		}
-	*MORE(c->watch, c->watches) = (struct watch){ .sequence = sequence, .whole = whole };
+	*MORE(c->watch, c->watches) = (struct watch){ .sequence = sequence, .full = full };
 	return c->watches - 1;
 }
 
@@ -475,10 +475,10 @@ static void watch_impact(struct constraints *all, int index)
 	RATIONAL factor = ZERO;
 	struct division d = divide_guard(w, impact, factor);
 	for (int i = 0; i < all->c->holds && !impact->bounces; i++)
-		if (all->c->hold[i].expression == d.expression && all->c->hold[i].breakpoint == d.breakpoint)
+		if (all->c->hold[i].function == d.function && all->c->hold[i].breakpoint == d.breakpoint)
 			report_held_twice(impact->when->at);
 	*series_impact =
-		(struct series_impact){ .expression = d.expression, .breakpoint = d.breakpoint, .upward = d.above,
+		(struct series_impact){ .function = d.function, .breakpoint = d.breakpoint, .upward = d.above,
 				   .hold = NONE, .jump = all->c->assignments, .still = all->c->assignments,
 				   .jumps = impact->in->jumps, .back = ARRAY(double, w->system->states),
 				   .restitution = round_rational(impact->in->restitution) };

@@ -6,14 +6,14 @@
 #include "step/series/sequences.h"
 #include "step/step.h"
 
-/* Impacts and what is held beside a series. Beside dividing expressions the search watches other sequences. */
+/* Impacts and what is held beside a series. Beside dividing switching functions the search watches other sequences. */
 struct watch {
 	int sequence, column;
-	bool whole;                 /* all coefficients are read, else the first two */
+	bool full;                  /* all coefficients are read, else the first two */
 };
 struct series_hold {                /* a velocity that is kept at 0: by friction that sticks, by a contact at rest */
-	int expression, breakpoint; /* held between this and its twin */
-	bool above;                 /* the velocity of friction, or the guard, rises with the expression */
+	int function, breakpoint; /* held between this and its twin */
+	bool above;                 /* the velocity of friction, or the guard, rises with the switching function */
 	int impact;                 /* whose contact rests; NONE: it is friction */
 	int velocity, pull[2];      /* watches; beyond 0 it is let go to the interval below, above; NONE: it is not */
 	double *back;               /* per state: what is taken from it for a velocity of 1 */
@@ -22,14 +22,14 @@ struct series_hold {                /* a velocity that is kept at 0: by friction
 	mpq_t *gives;               /* per force column: likewise */
 };
 struct series_impact {                     /* an impact */
-	int expression, breakpoint;
+	int function, breakpoint;
 	bool upward;
 	int hold;                   /* in which its contact rests; NONE: it is no bounce */
 	int place, speed;           /* watches: how far its guard is beyond 0; its rate */
 	int jump, still, jumps;     /* assignments, so many from each on */
 	double *back;               /* per state: what is taken from it for a guard of 1 */
 	double restitution;
-	double per;                 /* the expression's for a guard of 1 */
+	double per;                 /* the switching function's for a guard of 1 */
 };
 struct conflict {                   /* holds that cannot be all at once */
 	unsigned long set;          /* as bits */
@@ -58,7 +58,7 @@ bool is_bare(const struct sequencing *w, int state);         /* its slope withou
 struct sum held_slope(struct sequencing *w, int state);
 int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
 
-/* divided.c: those whose way counts stand first */
+/* switching.c: those whose way counts stand first */
 void sort_watches(struct contacts *c);
 
 #endif

@@ -6,7 +6,7 @@
 #include "plrt.h"
 #include "step/contacts/series_contacts.h"
 #include "step/cost.h"
-#include "step/series/divided.h"
+#include "step/series/switching.h"
 #include "step/series/expansion.h"
 
 
@@ -69,18 +69,18 @@ static bool *acting_loads(const struct linear *system)
 static int *watched_sequences(const struct expansion *x, int *count)
 {
 	const int watches = x->contacts ? x->contacts->watches : 0;
-	*count = x->expressions + watches;
+	*count = x->functions + watches;
 	int *sequence = ARRAY(int, *count);
 	for (int i = 0; i < *count; i++)
-		sequence[i] = i < x->expressions ? x->expression[i].sequence
-						 : x->contacts->watch[i - x->expressions].sequence;
+		sequence[i] = i < x->functions ? x->function[i].sequence
+						 : x->contacts->watch[i - x->functions].sequence;
 	return sequence;
 }
 
 static void count_checks(const struct step *step, struct event_split *event_split)
 {
 	const struct linear *system = &step->branch->system;
-	struct program program = { .uses = ARRAY(bool, step->branch->whole->columns) };
+	struct program program = { .uses = ARRAY(bool, step->branch->full->columns) };
 	struct step view = *step;
 	view.taylor.expansion = event_split->ends;
 	count_expansion(&view, &program);
@@ -121,12 +121,12 @@ void plan_event_split(struct step *held)
 	}
 	double turn = event_split->fastest * mpq_get_d(step->model->h);
 	event_split->certain = turn > TURN ? 1 / turn : 1;
-	if (step->model->asked.single)
+	if (step->model->request.single)
 		event_split->fastest = (double)(float)event_split->fastest;
 	count_checks(step, event_split);
 	event_split->kilobytes =
-		1 + PL_EVENT_SPLIT_ROOM(event_split->layout.size) * 2 * (step->model->asked.single ? 4 : 8) / 1024;
+		1 + PL_EVENT_SPLIT_ROOM(event_split->layout.size) * 2 * (step->model->request.single ? 4 : 8) / 1024;
 	held->event_split = event_split;
-	held->taylor.divided = event_split->event_check;
+	held->taylor.switching = event_split->event_check;
 	held->series.emitted = true;
 }

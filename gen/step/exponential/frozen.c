@@ -198,7 +198,7 @@ static double span_of(const struct step *step)
 	double h = nearest_double(step->model->h), slowest = 0;
 	double span = loads_change(system) ? nearest_double(system->change[system->segments - 2]) : 0;
 	for (int l = 0; l < system->loads; l++) {
-		double w = nearest_double(system->load[l].wave->w);
+		double w = nearest_double(system->load[l].forcing->w);
 		if (w > 0 && (slowest == 0 || w < slowest))
 			slowest = w;
 	}

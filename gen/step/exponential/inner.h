@@ -46,16 +46,17 @@ mpq_t *past_nodes(int count);                               /* 0, -1, ...: the l
 struct mode_flow mode_flow_of(const struct normal_mode *mode, mpq_srcptr h, mpq_srcptr theta, const struct lagrange *l);
 void mode_flow_free(struct mode_flow *flow);
 
-/* ---- waves.c: known loads, to which modes respond exactly ---- */
+/* ---- forcings.c: known loads, to which modes respond exactly ---- */
 
 void check_turns(const struct step *step);
-void find_waves(struct normal_work *w);
-double *waves_of_stage(const struct normal_work *w, mpq_srcptr theta); /* of all operators; see struct normal_stage */
+void find_forcings(struct normal_work *w);
+/* of all operators; see struct normal_stage */
+double *forcings_of_stage(const struct normal_work *w, mpq_srcptr theta);
 
 /* ---- steady.c: a step once all functions of time are constant ---- */
 
-/* Over [omega eta, eta', 1, cos and sin of each wave] of these modes, one omega each, above 0: of that size. M, C and
- * K: of the first operator, rows by coordinates */
+/* Over [omega eta, eta', 1, cos and sin of each forcing term] of these modes, one omega each, above 0: of that size. M,
+ * C and K: of the first operator, rows by coordinates */
 mpfr_t *steady_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K,
 		       const struct eigenpairs *pairs, mpfr_t *omega);
 

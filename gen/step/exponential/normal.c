@@ -17,7 +17,7 @@ enum {
 struct place scheme_place(const struct step *step)
 {
 	const struct model *model = step->model;
-	return model->asked.scheme_at.source ? model->asked.scheme_at : model->spec->name_at;
+	return model->request.scheme_at.source ? model->request.scheme_at : model->spec->name_at;
 }
 
 /* ---- which models have them ---- */
@@ -153,7 +153,7 @@ static struct normal_stage stage_of(const struct normal_work *w, mpq_srcptr thet
 {
 	const struct normal *normal = w->normal;
 	int width = normal->width, n = normal->modes;
-	struct normal_stage stage = { .points = l->nodes, .wave = waves_of_stage(w, theta) };
+	struct normal_stage stage = { .points = l->nodes, .forcing = forcings_of_stage(w, theta) };
 	stage.flow = ARRAY(double, (size_t)(normal->operators * 4 * width));
 	stage.weight = ARRAY(double, (size_t)(normal->operators * l->nodes * 2 * width));
 	for (int b = 0; b < normal->operators; b++)
@@ -274,7 +274,7 @@ static void check_changes(const struct step *step)
 	for (int s = 0; s + 1 < system->segments; s++) {
 		mpq_div(steps, system->change[s], model->h);
 		if (mpq_sgn(steps) > 0 && mpz_cmp_ui(mpq_denref(steps), 1) != 0)
-			error(model->asked.step_at, "a step of which that time is a multiple, or etdrk4 or taylor",
+			error(model->request.step_at, "a step of which that time is a multiple, or etdrk4 or taylor",
 			      "scheme %s starts anew where a formula in time changes: t = %s is inside a step of %s s",
 			      name_of(step), readable_text(system->change[s]), readable_text(model->h));
 	}
@@ -349,7 +349,7 @@ struct normal *normal_of(struct step *step)
 	find_turns(&w);
 	find_matrices(&w);
 	find_forces(&w);
-	find_waves(&w);
+	find_forcings(&w);
 	normal->collocation.stages = row->points ? row->points - 1 : model->truncation.stages;
 	normal->kept = row->points ? row->points : model->truncation.stages + 1;
 	normal->collocation.sweeps = SWEEPS;

@@ -24,7 +24,7 @@ struct normal_stage {               /* modes at a time after the step's start, f
 	int points;
 	double *flow;               /* [schedule][e, s, de, ds][place] */
 	double *weight;             /* [schedule][point][eta, eta'][place] */
-	double *wave;               /* [schedule][wave][of cos, of sin at the step's start][eta, eta'][place] */
+	double *forcing;            /* [schedule][forcing term][of cos, of sin at the step's start][eta, eta'][place] */
 };
 struct stability {                  /* of a multistep method, functions of time frozen */
 	double span;                /* [s] over which they are looked at */
@@ -35,7 +35,7 @@ struct stability {                  /* of a multistep method, functions of time 
 	double growth_factor;       /* that itself */
 };
 struct within {                     /* a step: states inside it, by Taylor series over its parts */
-	double angle;               /* by which a mode or a wave turns or decays in a step at most: in as many parts */
+	double angle; /* by which a mode or a forcing term turns or decays in a step at most: in as many parts */
 	int terms;
 	double *stiffness, *damping; /* [schedule][place] lambda, 2 delta; no damping: NULL */
 	/* Of the force's polynomial, the factors of what forces exceed that at the step's start by,
@@ -59,7 +59,7 @@ struct normal_collocation {
 	mpq_t *node;                /* stages + 1, from 0 to 1 */
 };
 struct normal_steady {              /* once all functions of time are constant */
-	/* over [omega eta, eta', 1, waves], by columns: [size][2 width]; NULL: they never are */
+	/* over [omega eta, eta', 1, forcing terms], by columns: [size][2 width]; NULL: they never are */
 	double *flow, *omega, *period; /* omega and 1/omega: [place] */
 	int schedule;               /* the operator whose modes they are */
 };
@@ -74,7 +74,7 @@ struct normal {
 	int matrices;
 	struct normal_matrix *matrix;
 	double **force;             /* per function: [schedule][place]; NULL: none */
-	double *wave;               /* forces of waves: [schedule][wave][cos, sin][place] */
+	double *forcing;            /* forces of forcing terms: [schedule][forcing term][cos, sin][place] */
 	struct normal_multistep multistep;
 	struct normal_collocation collocation;
 	int kept;                   /* forces that are kept between steps: points, or stages + 1 */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /*
- * From a time on all functions of time are constant: then M q'' + C q' + K q = g + waves with constant matrices, and a
- * step is e^{A h} of x = [q, q', 1, cos and sin of each wave]. It is taken over [omega eta, eta', 1, ...], whose matrix
- * has entries of the size of 1, where that over coordinates has frequencies for entries.
+ * From a time on all functions of time are constant: then M q'' + C q' + K q = g + forcing terms with constant
+ * matrices, and a step is e^{A h} of x = [q, q', 1, cos and sin of each forcing term]. It is taken over [omega eta,
+ * eta', 1, ...], whose matrix has entries of the size of 1, where that over coordinates has frequencies for entries.
  */
 #include "inner.h"
 
@@ -17,20 +17,20 @@ static void add_multiple(size_t cells, mpq_t *X, mpq_srcptr by, const mpq_t *Y)
 
 int steady_size(const struct model *model)
 {
-	return 2 * model->n + 1 + 2 * model->remainder.split->waves;
+	return 2 * model->n + 1 + 2 * model->remainder.split->forcings;
 }
 
-/* Rows of the waves: (a + i w) (cos + i sin); their forces, as columns of the accelerations */
-static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
+/* Rows of the forcing terms: (a + i w) (cos + i sin); their forces, as columns of the accelerations */
+static void add_forcings(const struct model *model, mpq_t *A, const mpq_t *inverse)
 {
 	int n = model->n, size = steady_size(model);
-	for (int k = 0; k < model->remainder.split->waves; k++) {
-		const struct wave_force *own = &model->remainder.split->wave[k];
+	for (int k = 0; k < model->remainder.split->forcings; k++) {
+		const struct forcing_force *own = &model->remainder.split->forcing[k];
 		int c = 2 * n + 1 + 2 * k, s = c + 1;
-		mpq_set(A[c * size + c], own->wave->a);
-		mpq_set(A[s * size + s], own->wave->a);
-		mpq_set(A[s * size + c], own->wave->w);
-		mpq_neg(A[c * size + s], own->wave->w);
+		mpq_set(A[c * size + c], own->forcing->a);
+		mpq_set(A[s * size + s], own->forcing->a);
+		mpq_set(A[s * size + c], own->forcing->w);
+		mpq_neg(A[c * size + s], own->forcing->w);
 		for (int i = 0; i < 2 * n * n; i++) {
 			mpq_ptr entry = A[(n + i / 2 / n) * size + c + i % 2];
 			rational_addmul(entry, inverse[i / 2], own->force[i % 2][i / 2 % n]);
@@ -38,7 +38,7 @@ static void add_waves(const struct model *model, mpq_t *A, const mpq_t *inverse)
 	}
 }
 
-/* A of [q, q', 1, waves], by the first operator and what it leaves over at the end */
+/* A of [q, q', 1, forcing terms], by the first operator and what it leaves over at the end */
 static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K)
 {
 	int n = model->n, size = steady_size(model), column;
@@ -67,7 +67,7 @@ static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t
 					rational_addmul(entry, inverse[i * n + k], of[d][k * (d < 2 ? n : 1) + j]);
 				}
 	}
-	add_waves(model, A, inverse);
+	add_forcings(model, A, inverse);
 	return A;
 }
 
@@ -122,7 +122,7 @@ mpfr_t *steady_matrix(const struct model *model, const mpq_t *M, const mpq_t *C,
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);
 	INTERVAL entry = OVER_BITS(ENTRY_BITS);
 	if (!taylor_enclose(taylor, ENTRY_BITS))
-		error(model->asked.step_at, NULL, "the step is too long for the model's fastest mode");
+		error(model->request.step_at, NULL, "the step is too long for the model's fastest mode");
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
 			taylor_entry(taylor, i, j, entry);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What forces and waves give a mode in a step. */
+/* What forces and forcing terms give a mode in a step. */
 #ifndef PLGEN_STEP_WEIGHTS_H
 #define PLGEN_STEP_WEIGHTS_H
 
@@ -21,7 +21,7 @@ struct mode_flow {                  /* of one mode over theta h */
 
 /* ---- steady.c: a step once all functions of time are constant ---- */
 
-int steady_size(const struct model *model);                 /* 2n + 1, and 2 for each wave */
+int steady_size(const struct model *model);                 /* 2n + 1, and 2 for each forcing term */
 
 /* ---- bank.c: what the remainders of a schedule's operators have in common ---- */
 

@@ -41,7 +41,7 @@ static void last_norms(const struct normal *m, const struct splitting *split, do
 	}
 }
 
-/* By what a mode or a wave turns or decays in a step at most; once nothing changes, the remainder makes modes
+/* By what a mode or a forcing term turns or decays in a step at most; once nothing changes, the remainder makes modes
  * faster. */
 static double angle_of_step(const struct normal_work *w)
 {
@@ -53,9 +53,9 @@ static double angle_of_step(const struct normal_work *w)
 		angle = turn > angle ? turn : angle;
 		fastest = fabs(lambda) > fastest ? fabs(lambda) : fastest;
 	}
-	for (int k = 0; k < w->model->remainder.split->waves; k++) {
-		const struct wave *wave = w->model->remainder.split->wave[k].wave;
-		double turn = fabs(nearest_double(wave->a)) + nearest_double(wave->w);
+	for (int k = 0; k < w->model->remainder.split->forcings; k++) {
+		const struct forcing *forcing = w->model->remainder.split->forcing[k].forcing;
+		double turn = fabs(nearest_double(forcing->a)) + nearest_double(forcing->w);
 		angle = turn > angle ? turn : angle;
 	}
 	if (m->steady.flow) {
@@ -72,7 +72,7 @@ void find_within(struct normal_work *w)
 	struct normal *m = w->normal;
 	struct within *within = &m->within;
 	int most = m->multistep.points ? m->multistep.points : m->collocation.stages,
-	    terms = w->model->asked.single ? FLOAT_TERMS : DOUBLE_TERMS;
+	    terms = w->model->request.single ? FLOAT_TERMS : DOUBLE_TERMS;
 	bool damped = false;
 	within->angle = angle_of_step(w);
 	within->terms = terms > most + FURTHER_TERMS ? terms : most + FURTHER_TERMS;

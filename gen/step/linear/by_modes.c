@@ -61,8 +61,8 @@ static struct program *modal_program(const struct step *step)
 	program->loops = true;
 	program->products_added = false;
 	program->groups = 0;
-	program->multiplications = 4 * modal->pairs + modal->reals + terms + program->wave_multiplications;
-	program->additions = 2 * modal->pairs + terms + program->wave_additions;
+	program->multiplications = 4 * modal->pairs + modal->reals + terms + program->forcing_multiplications;
+	program->additions = 2 * modal->pairs + terms + program->forcing_additions;
 	return program;
 }
 
@@ -101,16 +101,16 @@ void plan_modal(struct step *step)
 {
 	enum { AS_EXACT = 8 };          /* what states may lose that become modes, where nobody asked for them */
 	const struct model *model = step->model;
-	const bool asked = model->asked.form == FORM_MODAL;
-	const bool wanted = model->asked.form == FORM_AUTO && step->branch->system.states > LIMIT_UNROLLED_STATES &&
+	const bool requested = model->request.form == FORM_MODAL;
+	const bool wanted = model->request.form == FORM_AUTO && step->branch->system.states > LIMIT_UNROLLED_STATES &&
 			    only_linear_outputs(model) && step->program->loops && is_cheaper(step);
-	if (!asked && !wanted)
+	if (!requested && !wanted)
 		return;
 	const char *objection = modal_objection(step);
 	struct modal *modal = objection ? NULL : modal_of(step);
-	if (asked && !modal)
+	if (requested && !modal)
 		leave_form(step, objection ? objection : "two poles, or a pole and a load, are too close");
-	if (modal && (asked || modal->condition <= AS_EXACT))
+	if (modal && (requested || modal->condition <= AS_EXACT))
 		take_modal(step, modal);
 	else
 		step->no.modal = objection ? objection

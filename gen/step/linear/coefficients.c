@@ -118,7 +118,7 @@ static struct coefficient number_of(struct filling *f, bool two_words, enum soug
 	}
 	struct number number = ask(f, by_residues, sought, a, b);
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
-		undecided(f->model->asked.step_at, what, isolated);
+		undecided(f->model->request.step_at, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
@@ -254,11 +254,11 @@ static void fill_kicks(struct filling *f, struct table *table)
 	while (!round_kicks(f, table, precision)) {
 		precision *= 2;
 		if (precision > LIMIT_PRECISION)
-			undecided(f->model->asked.step_at, "a kick of the form kick-drift-kick", true);
+			undecided(f->model->request.step_at, "a kick of the form kick-drift-kick", true);
 	}
 	for (int i = 0; i < system->n * system->n; i++)
 		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
-			error(f->model->asked.step_at, "--form delta or --form direct may do",
+			error(f->model->request.step_at, "--form delta or --form direct may do",
 			      "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
@@ -452,13 +452,13 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 	}
 }
 
-/* A series of a wave that turns so often in a step would not end, and residues are slow beyond a few states. */
-static void check_waves(const struct filling *f)
+/* A series of a forcing term that turns so often in a step would not end, and residues are slow beyond a few states. */
+static void check_forcings(const struct filling *f)
 {
 	for (int l = 0; l < f->system->loads; l++) {
-		const long bits = rational_bits(f->system->load[l].wave->w) + rational_bits(f->model->h);
+		const long bits = rational_bits(f->system->load[l].forcing->w) + rational_bits(f->model->h);
 		if (bits > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
-			error(f->model->asked.step_at, NULL,
+			error(f->model->request.step_at, NULL,
 			      "the frequency of %s times the step is beyond the limit of 2^%d for models of more than "
 			      "%d states",
 			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
@@ -491,7 +491,7 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 	mpq_init(f->tau);
 	f->layout = layout_of_segments(system, longest_chain(count, wanted));
 	if (system->states > LIMIT_RESIDUE_STATES) {
-		check_waves(f);
+		check_forcings(f);
 		plan_exponentials(f, count, wanted);
 	}
 	for (int t = 0; t < count; t++) {
@@ -515,12 +515,12 @@ static void mark_zero(struct coefficient *c, size_t count)
 		c[i].zero = true;
 }
 
-static void scatter_square(const struct block *block, int n, const struct coefficient *part, struct coefficient *whole)
+static void scatter_square(const struct block *block, int n, const struct coefficient *part, struct coefficient *full)
 {
 	int m = block->system.n;
 	for (int i = 0; part && i < m; i++)
 		for (int j = 0; j < m; j++)
-			whole[block->coord[i] * n + block->coord[j]] = part[i * m + j];
+			full[block->coord[i] * n + block->coord[j]] = part[i * m + j];
 }
 
 /* The block's rows and columns to their places in the whole; between blocks everything stays exactly 0. */
@@ -550,12 +550,12 @@ struct table **tables_of(const struct model *model, struct resolvent *resolvent,
 {
 	struct block *block;
 	int blocks = blocks_of(system, &block);
-	struct filling whole = { .model = model,
+	struct filling full = { .model = model,
 				 .system = system,
 				 .resolvent = resolvent,
 				 .state_name = model->names.state };
 	if (blocks == 1)
-		return tables_of_block(&whole, count, wanted);
+		return tables_of_block(&full, count, wanted);
 	struct table **table = ARRAY(struct table *, count);
 	for (int t = 0; t < count; t++) {
 		table[t] = table_new(system, &wanted[t]);

@@ -44,12 +44,12 @@ static int moved_states(const struct linear *system, int load, int *state)
 }
 
 /* [a - A, w; -w, a - A]^-1 over the states given; NULL: a + iw is a pole */
-static const mpq_t *inverse_over(const struct linear *system, const struct wave *wave, int m, const int *state)
+static const mpq_t *inverse_over(const struct linear *system, const struct forcing *forcing, int m, const int *state)
 {
 	RATIONALS *A = state_matrix(system, false), *part = rationals((size_t)(m * m));
 	for (int i = 0; i < m * m; i++)
 		mpq_set(part[i], A[state[i / m] * system->states + state[i % m]]);
-	return shifted_inverse(m, part, wave->a, oscillates(wave) ? wave->w : NULL);
+	return shifted_inverse(m, part, forcing->a, oscillates(forcing) ? forcing->w : NULL);
 }
 
 /* P, states x columns of the load, in one segment of time */
@@ -96,9 +96,9 @@ static bool fill_forced(const struct linear *system, int l, const mpq_t *written
 	int states = system->states, all = load_columns(system), first = column_of_load(system, l),
 	    *state = ARRAY(int, states), rows = forced->rows;
 	int m = moved_states(system, l, state);
-	if (m * (oscillates(load->wave) ? 2 : 1) > LIMIT_SOLVED)
+	if (m * (oscillates(load->forcing) ? 2 : 1) > LIMIT_SOLVED)
 		return false;
-	const mpq_t *inverse = inverse_over(system, load->wave, m, state);
+	const mpq_t *inverse = inverse_over(system, load->forcing, m, state);
 	mpq_t *before = NULL;
 	for (int s = 0; s < system->segments && inverse; s++) {
 		mpq_t *P = rationals((size_t)(rows * load->columns));
@@ -142,7 +142,7 @@ static double load_roundings(const struct reckoning *r, int column)
 {
 	int l = r->load_of[column], at = column - column_of_load(&r->step->branch->system, l);
 	const struct load *load = &r->step->branch->system.load[l];
-	return 2 + 3 * (mpq_sgn(load->wave->a) != 0) + 4 * (at / (oscillates(load->wave) ? 2 : 1));
+	return 2 + 3 * (mpq_sgn(load->forcing->a) != 0) + 4 * (at / (oscillates(load->forcing) ? 2 : 1));
 }
 
 /* A load with a refresh comes from cos and sin there together: what counts is how large they are together, in `value`,
@@ -150,7 +150,7 @@ static double load_roundings(const struct reckoning *r, int column)
 static double size_of(const struct reckoning *r, int column, double value, double partner)
 {
 	const struct load *load = &r->step->branch->system.load[r->load_of[column]];
-	bool pair = is_refreshed(r->step, r->load_of[column]) && oscillates(load->wave);
+	bool pair = is_refreshed(r->step, r->load_of[column]) && oscillates(load->forcing);
 	return pair ? hypot(value, partner) : fabs(value);
 }
 
@@ -158,20 +158,20 @@ static double size_of(const struct reckoning *r, int column, double value, doubl
 static int partner_of(const struct reckoning *r, int column)
 {
 	int first = column_of_load(&r->step->branch->system, r->load_of[column]);
-	return oscillates(r->step->branch->system.load[r->load_of[column]].wave) ? first + ((column - first) ^ 1)
+	return oscillates(r->step->branch->system.load[r->load_of[column]].forcing) ? first + ((column - first) ^ 1)
 										 : column;
 }
 
 /* Of a load state */
 static double load_size(const struct reckoning *r, int column)
 {
-	const double *z = r->course->z + r->k * r->step->branch->whole->columns;
+	const double *z = r->course->z + r->k * r->step->branch->full->columns;
 	return size_of(r, column, z[column], z[partner_of(r, column)]);
 }
 
 static void reckon_load(struct reckoning *r, int row, int column)
 {
-	const struct table *table = r->step->branch->whole;
+	const struct table *table = r->step->branch->full;
 	const struct coefficient *factor =
 		table->load + (r->course->segment[r->k] * table->states + row) * table->columns;
 	double z = load_size(r, column), value = factor[column].value;
@@ -213,12 +213,12 @@ static struct rounded reckon(struct reckoning *r, const struct assignment *a)
 
 static double unit_of(const struct step *step)
 {
-	return step->model->asked.single ? 0x1p-24 : 0x1p-53;
+	return step->model->request.single ? 0x1p-24 : 0x1p-53;
 }
 
 static double part_of(const struct reckoning *r, int row, bool sizes)
 {
-	const struct table *table = r->step->branch->whole;
+	const struct table *table = r->step->branch->full;
 	double sum = 0;
 	for (int column = 0; r->forced && column < table->columns; column++) {
 		if (!r->forced->load[r->load_of[column]])
@@ -239,7 +239,7 @@ static double part_of(const struct reckoning *r, int row, bool sizes)
 /* What rounds where the forced part changes its formula before the next step */
 static double change_of(const struct reckoning *r, int state)
 {
-	const struct table *table = r->step->branch->whole;
+	const struct table *table = r->step->branch->full;
 	int segment = r->course->segment[r->k];
 	double sum = 0;
 	for (int column = 0; r->forced && segment != r->course->segment[r->k + 1] && column < table->columns; column++)
@@ -294,10 +294,10 @@ static const char *name_of_row(const struct step *step, int row)
 /* Over the whole course, relative to each state's largest value; the worst */
 static struct rounding bound_of(const struct step *step, const struct course *c, const struct forced *forced)
 {
-	int n = step->branch->system.states, rows = c->rows, *load_of = ARRAY(int, step->branch->whole->columns);
+	int n = step->branch->system.states, rows = c->rows, *load_of = ARRAY(int, step->branch->full->columns);
 	double *each = ARRAY(double, n), *most = ARRAY(double, n), *first = ARRAY(double, rows),
 	       *last = ARRAY(double, rows);
-	const double least = step->model->asked.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
+	const double least = step->model->request.single ? 0x1p-102 : 0x1p-969; /* below, products leave the range */
 	struct reckoning r = { .step = step, .course = c, .forced = forced, .load_of = load_of };
 	struct rounding bound = { .known = true, .steps = c->steps, .state = name_of_row(step, 0) };
 	for (int l = 0, column = 0; l < step->branch->system.loads; l++)
@@ -337,7 +337,7 @@ static struct rounding bound_of(const struct step *step, const struct course *c,
 static void count_forced(const struct step *step, struct forced *forced)
 {
 	const struct linear *system = &step->branch->system;
-	int columns = step->branch->whole->columns;
+	int columns = step->branch->full->columns;
 	struct tape *t = tape_new();
 	tape_of_forced(t, step, "");
 	const struct tape_cost cost = tape_cost(t);
@@ -393,7 +393,7 @@ static void choose_loads(struct step *step, const struct course *c, struct force
 void plan_forced(struct step *step)
 {
 	/* 2^17 units of rounding: over 1000 steps a bound, more than comes */
-	const double much = step->model->asked.single ? 0x1p-7 : 0x1p-36;
+	const double much = step->model->request.single ? 0x1p-7 : 0x1p-36;
 	struct linear *system = &step->branch->system;
 	struct course course;
 	bool any = false, *able = ARRAY(bool, system->loads);
@@ -403,7 +403,7 @@ void plan_forced(struct step *step)
 	if (!step->rounding.known || step->rounding.relative <= much || step->model->params.tuning)
 		return;
 	const mpq_t *written = step->model->relative ? relative_rows(step->model) : NULL;
-	const size_t cells = (size_t)(system->segments * course.rows * step->branch->whole->columns);
+	const size_t cells = (size_t)(system->segments * course.rows * step->branch->full->columns);
 	struct forced *forced = NEW(struct forced);
 	*forced = (struct forced){ .load = ARRAY(bool, system->loads),
 				   .rows = course.rows,

@@ -88,9 +88,9 @@ struct modal {                      /* modal states: the real parts of the pairs
 
 void plan_modal(struct step *step);                          /* where it is asked for, or cheaper and as exact */
 
-/* ---- rest.c: what is too small to count ---- */
+/* ---- denormal_flush.c: what is too small to count ---- */
 
-struct rest {                       /* parts of the state that nothing but themselves moves, and that decay */
+struct denormal_flush {                       /* parts of the state that nothing but themselves moves, and that decay */
 	bool in_step;               /* the step looks; else the run does */
 	int parts, *part;           /* per state as it is kept: its part; -1: of none that comes to rest */
 };

@@ -14,7 +14,7 @@ enum {
 const struct coefficient *group_factor(const struct step *step, const struct group *g, int row, int block,
 				       const struct operand *operand, int segment)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	const int state = g->state[row * g->blocks + block];
 	const struct coefficient *square = step->form == FORM_DELTA ? table->increment : table->Phi;
 	switch (operand->kind) {
@@ -45,7 +45,7 @@ bool group_acts(const struct step *step, const struct group *g, int row, const s
 /* Per state: the first state of its block */
 static int *blocks_of_step(const struct step *step)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	const int n = table->states, *tuned = tuned_components(step);
 	int *parent = numbers_up_to(n);
 	for (int i = 0; i < n; i++)
@@ -72,7 +72,7 @@ static struct group block_from(const int *first, int states, int state, const bo
 
 static struct operand operand_of_column(const struct step *step, const struct group *g, int k)
 {
-	const int columns = step->branch->whole->columns;
+	const int columns = step->branch->full->columns;
 	return k < g->states	       ? (struct operand){ OPERAND_STATE, k }
 	       : k < g->states + columns ? (struct operand){ OPERAND_LOAD, k - g->states }
 					 : (struct operand){ OPERAND_INPUT, k - g->states - columns };
@@ -81,7 +81,7 @@ static struct operand operand_of_column(const struct step *step, const struct gr
 /* Operands that it may have */
 static int operands_of(const struct step *step, const struct group *g)
 {
-	return g->states + step->branch->whole->columns + step->branch->whole->inputs;
+	return g->states + step->branch->full->columns + step->branch->full->inputs;
 }
 
 /* The same factors are 0. */
@@ -143,7 +143,7 @@ static void choose_kind(const struct step *step, struct group *g, int *page)
 
 static void list_columns(const struct step *step, struct group *g)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	g->load = ARRAY(int, table->columns);
 	g->input = ARRAY(int, table->inputs);
 	for (int k = g->states; k < operands_of(step, g); k++) {
@@ -199,8 +199,8 @@ static void count_columns(struct program *program, const struct group *g)
 
 static void count_groups(struct program *program, const struct step *step)
 {
-	program->multiplications = program->wave_multiplications;
-	program->additions = program->wave_additions;
+	program->multiplications = program->forcing_multiplications;
+	program->additions = program->forcing_additions;
 	for (int i = 0; i < program->groups; i++)
 		if (program->group[i].kind == GROUP_COLUMNS)
 			count_columns(program, &program->group[i]);
@@ -225,7 +225,7 @@ static int like(const struct step *step, const struct group *block, int blocks, 
 
 void find_groups(struct program *program, const struct step *step)
 {
-	const int states = step->branch->whole->states, *first = blocks_of_step(step);
+	const int states = step->branch->full->states, *first = blocks_of_step(step);
 	struct group *block = ARRAY(struct group, states);
 	const bool *touched = touched_states(step);
 	bool *grouped = ARRAY(bool, states);

@@ -37,7 +37,7 @@ static void add_entry(struct entries *list, int segment, int row, int column, co
 static void add_state_rows(struct entries *list, const struct step *step, const struct leap *leap, int segment)
 {
 	const struct linear *system = &step->branch->system;
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	for (int i = 0; i < table->states; i++) {
 		const struct coefficient *row = table->load + (segment * table->states + i) * table->columns;
 		for (int l = 0, column = 0; l < system->loads; column += system->load[l++].columns)
@@ -54,7 +54,7 @@ static struct coefficient *step_of_load(const struct step *step, const struct lo
 	struct coefficient *cell = ARRAY(struct coefficient, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++) {
 		struct response *response = response_of_load_state(load, i / n, i % n);
-		cell[i] = response_value(response, model->h, true, model->asked.step_at, column_text(load, i / n));
+		cell[i] = response_value(response, model->h, true, model->request.step_at, column_text(load, i / n));
 	}
 	return cell;
 }

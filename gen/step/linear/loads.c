@@ -14,7 +14,7 @@ struct transition {
 
 static struct transition transition_of(const struct load *load, int to, int from)
 {
-	int trig = oscillates(load->wave) ? 2 : 1, k = to / trig, j = from / trig;
+	int trig = oscillates(load->forcing) ? 2 : 1, k = to / trig, j = from / trig;
 	bool to_sine = to % trig, from_sine = from % trig;
 	struct transition t = { k - j, to_sine == from_sine, to_sine == from_sine ? 0 : to_sine ? 1 : -1, 1 };
 	for (int i = 0; i < k - j; i++)         /* small: powers of loads are limited */
@@ -83,7 +83,7 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 	struct response **kept = response_kept(r, system, place * system->states + i);
 	if (*kept)
 		return *kept;
-	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
+	struct excitation e = excitation_new(system->n, load->forcing->a, load->forcing->w, load->powers);
 	RATIONAL one = RATIO(1, 1);
 	add_load(&e, system, segment, load, NULL, column, one);
 	return *kept = image_of(r, &(struct question){ NULL, 1, &e, unit(system->states, i) });
@@ -150,12 +150,12 @@ struct response *response_of_phi_weight(struct resolvent *r, const struct linear
 
 struct response *response_of_load_state(const struct load *load, int to, int from)
 {
-	struct kept_response **kept = load->wave->kept;
+	struct kept_response **kept = load->forcing->kept;
 	for (struct kept_response *k = *kept; k; k = k->next)
 		if (k->to == to && k->from == from)
 			return k->response;
 	struct linear scalar = first_order_system(1, rationals(1));
-	struct excitation e = excitation_new(1, load->wave->a, load->wave->w, load->powers);
+	struct excitation e = excitation_new(1, load->forcing->a, load->forcing->w, load->powers);
 	struct transition t = transition_of(load, to, from);
 	RATIONAL one = RATIO(1, 1);
 	if (t.m >= 0) {
@@ -175,16 +175,16 @@ struct response *response_of_load_state(const struct load *load, int to, int fro
 void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 {
 	struct place nowhere = { 0 };
-	const struct wave *wave = load->wave;
-	bool turns = oscillates(wave);
+	const struct forcing *forcing = load->forcing;
+	bool turns = oscillates(forcing);
 	RATIONAL factor = ZERO;
-	mpq_mul(factor, wave->a, t);
+	mpq_mul(factor, forcing->a, t);
 	constant_function(nowhere, FN_EXP, factor, z);
 	for (int k = 0; k < (turns ? column / 2 : column); k++)
 		mpq_mul(z, z, t);
 	if (turns) {
-		mpq_mul(factor, wave->w, t);
-		mpq_add(factor, factor, wave->p);
+		mpq_mul(factor, forcing->w, t);
+		mpq_add(factor, factor, forcing->p);
 		constant_function(nowhere, column % 2 ? FN_SIN : FN_COS, factor, factor);
 		mpq_mul(z, z, factor);
 	}
@@ -214,7 +214,7 @@ struct response *output_of_load(struct resolvent *r, const struct linear *system
 				int column, const mpq_t *initial)
 {
 	const struct load *load = &system->load[l];
-	struct excitation e = excitation_new(system->n, load->wave->a, load->wave->w, load->powers);
+	struct excitation e = excitation_new(system->n, load->forcing->a, load->forcing->w, load->powers);
 	RATIONAL one = RATIO(1, 1);
 	add_load(&e, system, 0, load, output->load[l], column, one);
 	return image_of(r, &(struct question){ initial, 1, &e, output->state });
@@ -258,7 +258,7 @@ static struct excitation *no_loads(const struct linear *system)
 {
 	struct excitation *e = ARRAY(struct excitation, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		e[l] = excitation_new(system->n, system->load[l].wave->a, system->load[l].wave->w,
+		e[l] = excitation_new(system->n, system->load[l].forcing->a, system->load[l].forcing->w,
 				      system->load[l].powers);
 	return e;
 }

@@ -275,8 +275,8 @@ static bool put_oscillation(const struct filling *f, const struct mode_vectors *
 	RECTANGLE q = new_rectangle(bits), plus = new_rectangle(bits), minus = new_rectangle(bits),
 		  cosine = new_rectangle(bits), sine = new_rectangle(bits), z = new_rectangle(bits);
 	RECTANGLES *force = rectangles(2, bits);
-	mpfi_set_q(q.re, load->wave->a);
-	mpfi_set_q(q.im, load->wave->w);
+	mpfi_set_q(q.re, load->forcing->a);
+	mpfi_set_q(q.im, load->forcing->w);
 	bool good = convolve(m, f->step->model->h, &q, &plus);
 	mpfi_neg(q.im, q.im);
 	good = good && convolve(m, f->step->model->h, &q, &minus);
@@ -311,8 +311,8 @@ static bool put_growth(const struct filling *f, const struct mode_vectors *m, co
 	RECTANGLE q = new_rectangle(bits), z = new_rectangle(bits), ramp = new_rectangle(bits),
 		  force = new_rectangle(bits);
 	bool good = true;
-	mpfi_set_q(q.re, load->wave->a);
-	if (mpq_sgn(load->wave->a) == 0)
+	mpfi_set_q(q.re, load->forcing->a);
+	if (mpq_sgn(load->forcing->a) == 0)
 		convolve_ramp(m, f->step->model->h, &z, &ramp);
 	else
 		good = convolve(m, f->step->model->h, &q, &z);
@@ -329,7 +329,7 @@ static bool put_loads(const struct filling *f, const struct mode_vectors *m)
 		const struct load *load = &system->load[l];
 		if (!load_acts(system, load))
 			continue;
-		good = (oscillates(load->wave) ? put_oscillation : put_growth)(f, m, load, column);
+		good = (oscillates(load->forcing) ? put_oscillation : put_growth)(f, m, load, column);
 	}
 	return good;
 }

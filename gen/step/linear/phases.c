@@ -23,7 +23,7 @@ static void divide_by_unit(mpq_srcptr q, enum phase_unit unit, mpfi_ptr x)
 
 static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum phase_unit unit, long precision)
 {
-	error(step->model->asked.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
+	error(step->model->request.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
 	      unit == TURN ? "(2*pi)" : "ln 2", precision);
 }
 
@@ -59,21 +59,21 @@ static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum
 				     int fraction)
 {
 	struct fixed_point x;
-	INTEGER whole = INTEGER_ZERO, part = INTEGER_ZERO;
-	nearest_multiple(step, q, unit, fraction, whole);
+	INTEGER full = INTEGER_ZERO, part = INTEGER_ZERO;
+	nearest_multiple(step, q, unit, fraction, full);
 	if (unit == OCTAVE)
-		saturate(whole, bits);
-	mpz_fdiv_r_2exp(whole, whole, (mp_bitcnt_t)bits);
-	mpz_fdiv_r_2exp(part, whole, 64);
+		saturate(full, bits);
+	mpz_fdiv_r_2exp(full, full, (mp_bitcnt_t)bits);
+	mpz_fdiv_r_2exp(part, full, 64);
 	x.low = mpz_get_ui(part);
-	mpz_fdiv_q_2exp(part, whole, 64);
+	mpz_fdiv_q_2exp(part, full, 64);
 	x.high = mpz_get_ui(part);
 	return x;
 }
 
 int phase_bits(const struct step *step)
 {
-	return step->model->asked.single ? 64 : 128;
+	return step->model->request.single ? 64 : 128;
 }
 
 int growth_bits(const struct step *step)
@@ -86,16 +86,16 @@ static struct fixed_point turn_of(const struct step *step, mpq_srcptr angle)
 	return fixed_from(step, angle, TURN, phase_bits(step), phase_bits(step));
 }
 
-static struct advance advance_over(const struct step *step, const struct wave *wave, mpq_srcptr seconds)
+static struct advance advance_over(const struct step *step, const struct forcing *forcing, mpq_srcptr seconds)
 {
 	struct advance advance = { 0 };
 	RATIONAL product = ZERO;
-	if (oscillates(wave)) {
-		mpq_mul(product, wave->w, seconds);
+	if (oscillates(forcing)) {
+		mpq_mul(product, forcing->w, seconds);
 		advance.turn = turn_of(step, product);
 	}
-	if (mpq_sgn(wave->a) != 0) {
-		mpq_mul(product, wave->a, seconds);
+	if (mpq_sgn(forcing->a) != 0) {
+		mpq_mul(product, forcing->a, seconds);
 		advance.growth = fixed_from(step, product, OCTAVE, phase_bits(step), growth_bits(step));
 	}
 	return advance;
@@ -125,20 +125,20 @@ static struct rate rate_of(const struct step *step, mpq_srcptr q, enum phase_uni
 	return rate;
 }
 
-static struct load_phase phase_of(const struct step *step, const struct wave *wave)
+static struct load_phase phase_of(const struct step *step, const struct forcing *forcing)
 {
-	struct load_phase phase = { .step = advance_over(step, wave, step->model->h) };
-	if (oscillates(wave)) {
-		phase.start = turn_of(step, wave->p);
-		phase.turns = rate_of(step, wave->w, TURN);
+	struct load_phase phase = { .step = advance_over(step, forcing, step->model->h) };
+	if (oscillates(forcing)) {
+		phase.start = turn_of(step, forcing->p);
+		phase.turns = rate_of(step, forcing->w, TURN);
 	}
-	if (mpq_sgn(wave->a) != 0)
-		phase.growth = rate_of(step, wave->a, OCTAVE);
+	if (mpq_sgn(forcing->a) != 0)
+		phase.growth = rate_of(step, forcing->a, OCTAVE);
 	RATIONAL seconds = ZERO;
 	phase.node = ARRAY(struct advance, step->program->nodes);
 	for (int i = 0; i < step->program->nodes; i++) {
 		mpq_mul(seconds, step->program->node[i], step->model->h);
-		phase.node[i] = advance_over(step, wave, seconds);
+		phase.node[i] = advance_over(step, forcing, seconds);
 	}
 	return phase;
 }
@@ -148,5 +148,5 @@ void plan_phases(struct step *step)
 	const struct linear *system = &step->branch->system;
 	step->linear.phase = ARRAY(struct load_phase, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		step->linear.phase[l] = phase_of(step, system->load[l].wave);
+		step->linear.phase[l] = phase_of(step, system->load[l].forcing);
 }

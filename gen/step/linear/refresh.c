@@ -23,7 +23,7 @@ enum {
 
 static bool moves(const struct step *step, int state, int first, int columns)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	bool any = false;
 	for (int k = first; k < first + columns; k++)
 		any = any || !table->load[state * table->columns + k].zero;
@@ -56,7 +56,7 @@ static double growth_in_step(const struct step *step, const struct refresh *refr
 	double most = 0;
 	for (int l = 0; l < system->loads; l++)
 		if (refresh->load[l])
-			most = fmax(most, fabs(mpq_get_d(system->load[l].wave->a)));
+			most = fmax(most, fabs(mpq_get_d(system->load[l].forcing->a)));
 	return most * mpq_get_d(step->model->h);
 }
 
@@ -73,23 +73,23 @@ static bool fits(const struct step *step, const struct refresh *refresh, int ste
 /* Where more than 1 was asked for */
 static void note_aside(const struct step *step, const char *why)
 {
-	const char *steps = format("%d", step->model->asked.refresh);
-	if (step->model->asked.refresh > 1 && !step->model->asked.again.trial)
+	const char *steps = format("%d", step->model->request.refresh);
+	if (step->model->request.refresh > 1 && !step->model->request.again.trial)
 		stand_aside((struct place){ source_argument(steps), 0 }, format("--refresh %s", steps), why);
 }
 
 /* As many as were asked for, or as are good; 1: what stands against more is said */
 static int chosen_steps(struct step *step, const struct refresh *refresh)
 {
-	int asked = step->model->asked.refresh;
-	if (asked && !is_steady(step, refresh, asked)) {
+	int requested = step->model->request.refresh;
+	if (requested && !is_steady(step, refresh, requested)) {
 		note_aside(step, format("a load changes by more than e^%d between refreshes", MOST_GROWTH));
-		asked = 0;
+		requested = 0;
 	}
-	int steps = asked ? asked : REFRESH_STEPS;
-	while (!asked && steps >= FEWEST_STEPS && !(fits(step, refresh, steps) && is_steady(step, refresh, steps)))
+	int steps = requested ? requested : REFRESH_STEPS;
+	while (!requested && steps >= FEWEST_STEPS && !(fits(step, refresh, steps) && is_steady(step, refresh, steps)))
 		steps /= 2;
-	if (steps >= FEWEST_STEPS || asked)
+	if (steps >= FEWEST_STEPS || requested)
 		return steps;
 	step->no.refresh = fits(step, refresh, FEWEST_STEPS) ? "a load changes too much from step to step"
 							     : "tables would be large";
@@ -103,7 +103,7 @@ static struct refresh *refresh_of(const struct step *step)
 	refresh->rotated = step->model->switching != NULL;
 	refresh->load = refresh->rotated ? loads_of_regions(step) : ARRAY(bool, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		refresh->load[l] = !is_polynomial(system->load[l].wave) &&
+		refresh->load[l] = !is_polynomial(system->load[l].forcing) &&
 				   (refresh->rotated ? refresh->load[l] : load_acts(system, &system->load[l]));
 	return refresh;
 }
@@ -119,10 +119,10 @@ static bool any_load(const struct step *step, const struct refresh *refresh)
 /* NULL: more than 1 was asked for, or serves best. What a need is met with is the cheapest that there is. */
 static const char *not_asked_for(const struct model *model)
 {
-	const struct request *asked = &model->asked;
-	if (asked->refresh)
-		return asked->refresh == 1 ? "--refresh 1" : NULL;
-	return asked->phasors || model->spec->required.needs > 0 ? NULL : "--fast adds them";
+	const struct request *requested = &model->request;
+	if (requested->refresh)
+		return requested->refresh == 1 ? "--refresh 1" : NULL;
+	return requested->phasors || model->spec->required.needs > 0 ? NULL : "--fast adds them";
 }
 
 void check_refresh(struct step *step)
@@ -169,7 +169,7 @@ struct turn {                       /* e^{a tau} cos(w tau) and sin */
 };
 
 /* e^{a tau} cos(w tau) and sin; kept, since all states that the load moves ask for it */
-static void enclose_turn(const struct wave *wave, struct turn *turn, int precision)
+static void enclose_turn(const struct forcing *forcing, struct turn *turn, int precision)
 {
 	if (turn->precision == precision)
 		return;
@@ -178,11 +178,11 @@ static void enclose_turn(const struct wave *wave, struct turn *turn, int precisi
 	mpfi_set_prec(turn->z[1], precision);
 	RATIONAL product = ZERO;
 	INTERVAL x = OVER_BITS(precision);
-	mpq_mul(product, wave->w, turn->tau);
+	mpq_mul(product, forcing->w, turn->tau);
 	mpfi_set_q(x, product);
 	mpfi_cos(turn->z[0], x);
 	mpfi_sin(turn->z[1], x);
-	mpq_mul(product, wave->a, turn->tau);
+	mpq_mul(product, forcing->a, turn->tau);
 	mpfi_set_q(x, product);
 	mpfi_exp(x, x);
 	mpfi_mul(turn->z[0], turn->z[0], x);
@@ -236,9 +236,9 @@ struct row {                        /* what a load adds to a state */
 
 static struct block_source source_of_block(const struct step *step, const struct linear *system)
 {
-	bool whole = system->states == step->branch->system.states;
+	bool full = system->states == step->branch->system.states;
 	struct block_source source = { .system = system,
-				       .resolvent = whole ? step->branch->resolvent : resolvent_of(system),
+				       .resolvent = full ? step->branch->resolvent : resolvent_of(system),
 				       .layout = layout_of(system, 0) };
 	if (system->states > LIMIT_RESIDUE_STATES)
 		source.taylor = taylor_of(source.layout.size,
@@ -284,12 +284,12 @@ static bool enclose_column(struct row *row, int k, int precision)
 /* sum = column `from` of L E_l: t^k cos from t^j, j <= k; cos(x + w tau) = cos x cos(w tau) - sin x sin(w tau) */
 static bool enclose_rotated(struct row *row, struct turn *turn, int from, int precision, mpfi_ptr sum)
 {
-	const struct wave *wave = row->source->system->load[row->load].wave;
-	int trig = oscillates(wave) ? 2 : 1;
+	const struct forcing *forcing = row->source->system->load[row->load].forcing;
+	int trig = oscillates(forcing) ? 2 : 1;
 	bool good = true;
 	INTERVAL value = OVER_BITS(precision);
 	RATIONAL power = ZERO;
-	enclose_turn(wave, turn, precision);
+	enclose_turn(forcing, turn, precision);
 	mpfi_set_prec(sum, precision);
 	mpfi_set_ui(sum, 0);
 	for (int to = from / trig * trig; to < row->columns && good; to++) {
@@ -322,7 +322,7 @@ static void fill_term(const struct step *step, struct row *row, struct turn *tur
 		precision *= 2;
 	bool decided = precision <= LIMIT_PRECISION;
 	if (!decided || !isfinite(c->value))
-		error(step->model->asked.step_at, "--refresh 1 may do",
+		error(step->model->request.step_at, "--refresh 1 may do",
 		      "what a load adds so many steps after a refresh is %s",
 		      decided ? format("beyond the range of %s", target_name())
 			      : format("not decided with %d bits", LIMIT_PRECISION));
@@ -359,11 +359,11 @@ static void fill_block(const struct step *step, const struct block *block, struc
 }
 
 /* What turns the load states of a refresh into those of now */
-static void fill_turn(const struct wave *wave, struct turn *turn, double value[2])
+static void fill_turn(const struct forcing *forcing, struct turn *turn, double value[2])
 {
 	bool decided = false;
 	for (int precision = FIRST_PRECISION; precision <= LIMIT_PRECISION && !decided; precision *= 2) {
-		enclose_turn(wave, turn, precision);
+		enclose_turn(forcing, turn, precision);
 		decided = round_enclosure(turn->z[0], &value[0]) && round_enclosure(turn->z[1], &value[1]);
 	}
 }
@@ -382,7 +382,7 @@ void fill_refresh(struct step *step)
 	for (int l = 0; l < system->loads; l++) {
 		turn[l] = is_refreshed(step, l) ? turns_of(step) : NULL;
 		for (int k = 0; turn[l] && k < refresh->steps; k++)
-			fill_turn(system->load[l].wave, &turn[l][k], &refresh->turn[2 * (l * refresh->steps + k)]);
+			fill_turn(system->load[l].forcing, &turn[l][k], &refresh->turn[2 * (l * refresh->steps + k)]);
 	}
 	int blocks = blocks_of(system, &block);
 	for (int b = 0; b < blocks; b++)

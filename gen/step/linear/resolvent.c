@@ -12,7 +12,7 @@ struct resolvent {
 	int parts;
 	struct poly *part;
 	mpz_t *row;                 /* scale of each row */
-	struct linear asked;        /* whose responses are kept */
+	struct linear requested;    /* whose responses are kept */
 	struct response **kept, *none;
 };
 
@@ -87,10 +87,10 @@ struct response **response_kept(struct resolvent *r, const struct linear *system
 		r->none = NULL;
 		return &r->none;
 	}
-	if (!r->kept || r->asked.load != system->load || r->asked.heldK != system->heldK ||
-			r->asked.heldC != system->heldC) {
+	if (!r->kept || r->requested.load != system->load || r->requested.heldK != system->heldK ||
+			r->requested.heldC != system->heldC) {
 		const int columns = system->states + system->segments * load_columns(system);
-		r->asked = *system;
+		r->requested = *system;
 		r->kept = ARRAY(struct response *, (size_t)(system->states * columns));
 	}
 	return &r->kept[number];

@@ -103,7 +103,7 @@ static struct share share_of_load(const struct step *step, const struct output *
  * finite leaves the statement. */
 static struct coefficient value_of(const struct step *step, const struct share *share, int steps, bool two_words)
 {
-	struct place at = step->model->asked.step_at;
+	struct place at = step->model->request.step_at;
 	struct coefficient c;
 	int count = share->count < steps ? share->count : steps;
 	RATIONAL t = RATIO(steps, 1);
@@ -117,7 +117,7 @@ static struct coefficient value_of(const struct step *step, const struct share *
 /* Near the least number of the type a product takes many times as long, and no sum would show it. */
 static double number_of(const struct step *step, const struct share *share, int steps)
 {
-	const double least = step->model->asked.single ? 0x1p-110 : 0x1p-960;
+	const double least = step->model->request.single ? 0x1p-110 : 0x1p-960;
 	double value = value_of(step, share, steps, false).value;
 	return fabs(value) < least ? 0 : value;
 }
@@ -125,7 +125,7 @@ static double number_of(const struct step *step, const struct share *share, int 
 /* ---- the tables of a block ---- */
 
 typedef struct share share_maker(const struct step *step, const struct output *output, int index);
-struct asked {                      /* a column to be, or a sample */
+struct requested {                  /* a column to be, or a sample */
 	struct operand operand;
 	struct share *share;        /* per output */
 	double *value;              /* [row][output] */
@@ -134,17 +134,17 @@ struct asking {
 	const struct step *step;
 	const struct rows *rows;
 	int count;
-	struct asked *asked;
+	struct requested *requested;
 };
 
 static void ask(struct asking *a, enum operand_kind kind, int index, share_maker *share_of, int source)
 {
 	int outputs = a->rows->outputs;
-	struct asked *asked = &a->asked[a->count++];
-	*asked = (struct asked){ { kind, index }, ARRAY(struct share, outputs),
+	struct requested *requested = &a->requested[a->count++];
+	*requested = (struct requested){ { kind, index }, ARRAY(struct share, outputs),
 				 ARRAY(double, (size_t)(a->rows->count * outputs)) };
 	for (int o = 0; o < outputs; o++)
-		asked->share[o] = share_of(a->step, &a->step->model->output[o], source);
+		requested->share[o] = share_of(a->step, &a->step->model->output[o], source);
 }
 
 /* Row by row: what poles give at one time serves every column. */
@@ -154,23 +154,24 @@ static void evaluate_all(const struct asking *a)
 	for (int l = 0; l < a->rows->count; l++)
 		for (int k = 0; k < a->count; k++)
 			for (int o = 0; o < outputs; o++)
-				a->asked[k].value[l * outputs + o] = number_of(a->step, &a->asked[k].share[o], l + 1);
+				a->requested[k].value[l * outputs + o] =
+					number_of(a->step, &a->requested[k].share[o], l + 1);
 }
 
-static void keep_column(struct rows *rows, const struct asked *asked)
+static void keep_column(struct rows *rows, const struct requested *requested)
 {
 	bool any = false;
 	for (int i = 0; i < rows->count * rows->outputs; i++)
-		any = any || asked->value[i] != 0;
+		any = any || requested->value[i] != 0;
 	if (any)
-		rows->column[rows->columns++] = (struct row_column){ asked->operand, asked->value };
+		rows->column[rows->columns++] = (struct row_column){ requested->operand, requested->value };
 }
 
 static void fill_columns(const struct step *step, struct rows *rows)
 {
 	const struct linear *system = &step->branch->system;
 	int loads = load_columns(system), held = held_columns(system), columns = system->states + loads + held;
-	struct asking a = { step, rows, 0, ARRAY(struct asked, (size_t)(columns + system->inputs)) };
+	struct asking a = { step, rows, 0, ARRAY(struct requested, (size_t)(columns + system->inputs)) };
 	for (int j = 0; j < system->states; j++)
 		ask(&a, OPERAND_STATE, j, share_of_state, j);
 	for (int k = 0; k < loads; k++)
@@ -183,10 +184,10 @@ static void fill_columns(const struct step *step, struct rows *rows)
 	evaluate_all(&a);
 	rows->column = ARRAY(struct row_column, columns + 1);
 	for (int k = 0; k < columns; k++)
-		keep_column(rows, &a.asked[k]);
+		keep_column(rows, &a.requested[k]);
 	rows->sample = ARRAY(double *, system->inputs);
 	for (int i = 0; i < system->inputs; i++)
-		rows->sample[i] = a.asked[columns + i].value;
+		rows->sample[i] = a.requested[columns + i].value;
 }
 
 /* ---- the step of K h ---- */
@@ -229,8 +230,8 @@ static struct step *block_of(const struct step *step, int count)
 	block->refresh = NULL;          /* a refresh stands where a block starts */
 	block->branch = NEW(struct branch);
 	*block->branch = *step->branch;
-	block->branch->whole = tables_of(step->model, step->branch->resolvent, system, 1, wanted)[0];
-	fill_inputs(step, count, block->branch->whole);
+	block->branch->full = tables_of(step->model, step->branch->resolvent, system, 1, wanted)[0];
+	fill_inputs(step, count, block->branch->full);
 	block->program = linear_program(block);
 	return block;
 }
@@ -260,7 +261,7 @@ static int group_of(const struct step *step, int count, int outputs)
 /* A sample of an input costs the more the more rows come after it; what loads cost once in a block, the less. */
 static int best_rows(const struct step *step)
 {
-	return step->branch->system.inputs ? 4 : step->program->wave_multiplications ? 64 : 32;
+	return step->branch->system.inputs ? 4 : step->program->forcing_multiplications ? 64 : 32;
 }
 
 /* Kicks are as S^-1: a step of K h has to be far from where S vanishes. */
@@ -298,7 +299,7 @@ static bool try_rows(struct step *step, int count)
 	*rows = (struct rows){ .count = count, .outputs = step->model->outputs };
 	rows->group = group_of(step, count, rows->outputs);
 	struct attempt attempt = { step, rows };
-	if (!fits(step, rows) || (!step->model->asked.rows && !is_worth_it(step, rows)) ||
+	if (!fits(step, rows) || (!step->model->request.rows && !is_worth_it(step, rows)) ||
 	    !silent_guard(make_rows, &attempt))
 		return false;
 	step->rows = rows->block->rows = rows;
@@ -309,16 +310,17 @@ static bool try_rows(struct step *step, int count)
  * a small board's model. */
 void plan_rows(struct step *step)
 {
-	const struct request *asked = &step->model->asked;
-	if (!wants_rows(asked) || (!asked->rows && (asked->single || !is_linear_alone(step) || step->is.tuned)))
+	const struct request *requested = &step->model->request;
+	if (!wants_rows(requested) ||
+	    (!requested->rows && (requested->single || !is_linear_alone(step) || step->is.tuned)))
 		return;
 	step->no.rows = step_objection(step, CAN_ROWS);
 	if (step->no.rows)
 		return;
-	int wish = asked->rows ? asked->rows : best_rows(step);
-	for (int count = most_rows(step, wish); count >= (asked->rows ? wish : FEWEST) && !step->rows; count /= 2)
+	int wish = requested->rows ? requested->rows : best_rows(step);
+	for (int count = most_rows(step, wish); count >= (requested->rows ? wish : FEWEST) && !step->rows; count /= 2)
 		try_rows(step, count);
 	if (!step->rows)
-		step->no.rows = asked->rows ? format("%d are too many for it", wish)
+		step->no.rows = requested->rows ? format("%d are too many for it", wish)
 					    : "they would not be faster, or leave the range";
 }

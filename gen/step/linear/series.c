@@ -14,11 +14,11 @@ static void larger_pole(mpfr_ptr largest, const struct rectangle *at)
 	mpfr_max(largest, largest, right, MPFR_RNDU);
 }
 
-static void larger_wave(mpfr_ptr largest, const struct wave *wave)
+static void larger_forcing(mpfr_ptr largest, const struct forcing *forcing)
 {
 	REAL a = WITH_BITS(BITS), w = WITH_BITS(BITS);
-	mpfr_set_q(a, wave->a, MPFR_RNDA);
-	mpfr_set_q(w, wave->w, MPFR_RNDA);
+	mpfr_set_q(a, forcing->a, MPFR_RNDA);
+	mpfr_set_q(w, forcing->w, MPFR_RNDA);
 	mpfr_hypot(a, a, w, MPFR_RNDU);
 	mpfr_max(largest, largest, a, MPFR_RNDU);
 }
@@ -45,7 +45,7 @@ static void largest_angle(const struct step *step, int from, int to, mpfr_ptr an
 		larger_poles(angle, step->branch[k].resolvent);
 	for (int l = 0; l < step->branch->system.loads; l++)
 		if (step->layout.load[l] >= 0)
-			larger_wave(angle, step->branch->system.load[l].wave);
+			larger_forcing(angle, step->branch->system.load[l].forcing);
 	mpfr_mul_q(angle, angle, step->model->h, MPFR_RNDU);
 }
 

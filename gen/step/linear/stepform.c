@@ -132,12 +132,12 @@ static const char *kick_objection(struct step *step)
 void leave_form(struct step *step, const char *why)
 {
 	const struct model *model = step->model;
-	const char *form = step_form_name(model->asked.form);
-	if (model->asked.again.trial)
-		error(model->asked.form_at, NULL, "the form %s cannot step this model: %s", form, why);
-	stand_aside(model->asked.form_at, format("--form %s", form), why);
+	const char *form = step_form_name(model->request.form);
+	if (model->request.again.trial)
+		error(model->request.form_at, NULL, "the form %s cannot step this model: %s", form, why);
+	stand_aside(model->request.form_at, format("--form %s", form), why);
 	step->plain = model_copy(model);
-	step->plain->asked.form = FORM_AUTO;
+	step->plain->request.form = FORM_AUTO;
 	abandon();
 }
 
@@ -151,16 +151,16 @@ static enum step_form only_form(const struct step *step)
 
 void check_step_form(struct step *step)
 {
-	const enum step_form asked = step->model->asked.form, only = only_form(step);
-	if (asked == FORM_AUTO || asked == only)
+	const enum step_form requested = step->model->request.form, only = only_form(step);
+	if (requested == FORM_AUTO || requested == only)
 		return;
 	if (only == FORM_DELTA)
 		leave_form(step, "--accuracy compensated takes the form delta of a piecewise-linear step");
 	if (only == FORM_DIRECT)
 		leave_form(step, "it is of a linear step");
-	if (step->is.two_words && (asked == FORM_DIRECT || asked == FORM_MODAL))
+	if (step->is.two_words && (requested == FORM_DIRECT || requested == FORM_MODAL))
 		leave_form(step, "--accuracy compensated takes the form delta or kick-drift-kick");
-	if (asked == FORM_MODAL && step->model->asked.batch)
+	if (requested == FORM_MODAL && step->model->request.batch)
 		leave_form(step, "it keeps modes in the place of states, which --batch steps");
 }
 
@@ -168,7 +168,7 @@ void check_step_form(struct step *step)
 void choose_form_of_regions(struct step *step)
 {
 	const struct model *model = step->model;
-	step->form = model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
+	step->form = model->request.compensated ? FORM_DELTA : FORM_DIRECT;
 }
 
 /* Kick-drift-kick where it can be; delta where I is most of Phi. */
@@ -176,21 +176,21 @@ static enum step_form best_form(struct step *step)
 {
 	const struct model *model = step->model;
 	if (step->branch->system.heldK)
-		return model->asked.compensated ? FORM_DELTA : FORM_DIRECT;
+		return model->request.compensated ? FORM_DELTA : FORM_DIRECT;
 	if (!kick_objection(step))
 		return FORM_KICK_DRIFT_KICK;
 	if (model->params.tuning)
 		return FORM_DELTA;      /* good at any step that the target may be told */
-	return model->asked.compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
+	return model->request.compensated || largest_pole_angle(step) <= 1 ? FORM_DELTA : FORM_DIRECT;
 }
 
 void choose_form(struct step *step)
 {
 	const struct model *model = step->model;
-	step->form = model->asked.form == FORM_AUTO ? best_form(step)
-		     : model->asked.form == FORM_MODAL ? FORM_DIRECT  /* until plan_modal */
-						       : model->asked.form;
-	if (model->asked.form == FORM_KICK_DRIFT_KICK) {
+	step->form = model->request.form == FORM_AUTO ? best_form(step)
+		     : model->request.form == FORM_MODAL ? FORM_DIRECT  /* until plan_modal */
+						       : model->request.form;
+	if (model->request.form == FORM_KICK_DRIFT_KICK) {
 		const char *objection = kick_objection(step);
 		if (objection)
 			leave_form(step, objection);
@@ -250,9 +250,9 @@ static bool *read_elsewhere(const struct step *step)
 		for (int i = 0; i < n; i++)
 			reads[i] = reads[i] || selector.state[i];
 	}
-	for (int x = 0; model->switching && x < model->switching->expressions; x++)
+	for (int x = 0; model->switching && x < model->switching->functions; x++)
 		for (int i = 0; i < n; i++)
-			reads[i] = reads[i] || mpq_sgn(model->switching->expression[x].row->state[i]) != 0;
+			reads[i] = reads[i] || mpq_sgn(model->switching->function[x].row->state[i]) != 0;
 	if (model->switching)
 		mark_jumps(model->switching, n, reads);
 	return reads;
@@ -261,7 +261,7 @@ static bool *read_elsewhere(const struct step *step)
 /* Is anything added to the state in a step? */
 static bool moves(const struct step *step, const bool *reads, int state, bool listed)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	int n = step->branch->system.states;
 	bool any = false;
 	for (int j = 0; j < n; j++)
@@ -314,7 +314,7 @@ static void add_term(struct assignment *a, const struct coefficient *factor, enu
 static void add_load_term(struct assignment *a, const struct step *step, int row, int column)
 {
 	const struct linear *system = &step->branch->system;
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	int first, load = load_of_column(system, column, &first), last = first + system->load[load].columns - 1;
 	bool any = false;
 	if (!is_refreshed(step, load))
@@ -364,8 +364,8 @@ static struct assignment *new_assignment(struct program *program, const struct s
 {
 	struct assignment *a = MORE(program->assignment, program->assignments);
 	*a = (struct assignment){ .target = target, .added = added, .carried = step->carried.place[target] >= 0 };
-	a->term = ARRAY(struct product, (size_t)(step->branch->whole->states + step->branch->whole->columns +
-						 step->branch->whole->inputs));
+	a->term = ARRAY(struct product, (size_t)(step->branch->full->states + step->branch->full->columns +
+						 step->branch->full->inputs));
 	return a;
 }
 
@@ -377,7 +377,7 @@ static void drop_identity(struct program *program)
 
 static void add_loads_and_inputs(struct assignment *a, const struct step *step, int row)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	for (int k = 0; k < table->columns; k++)
 		add_load_term(a, step, row, k);
 	for (int k = 0; k < table->inputs; k++)
@@ -386,12 +386,12 @@ static void add_loads_and_inputs(struct assignment *a, const struct step *step, 
 
 static void write_direct(struct program *program, const struct step *step)
 {
-	int n = step->branch->whole->states;
+	int n = step->branch->full->states;
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, step->carried.place[i] >= 0);
 		for (int j = 0; j < n; j++)
 			if (j != i || !a->added)        /* there Phi_ii is 1 */
-				add_term(a, &step->branch->whole->Phi[i * n + j], OPERAND_STATE, j);
+				add_term(a, &step->branch->full->Phi[i * n + j], OPERAND_STATE, j);
 		add_loads_and_inputs(a, step, i);
 		drop_identity(program);
 	}
@@ -399,7 +399,7 @@ static void write_direct(struct program *program, const struct step *step)
 
 static void write_delta(struct program *program, const struct step *step)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	int n = table->states;
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
@@ -416,7 +416,7 @@ static void write_kicks(struct program *program, const struct step *step)
 	for (int i = 0; i < system->n; i++) {
 		struct assignment *a = new_assignment(program, step, system->velocity[i], true);
 		for (int j = 0; j < system->n; j++)
-			add_term(a, &step->branch->whole->kick[i * system->n + j], OPERAND_STATE, j);
+			add_term(a, &step->branch->full->kick[i * system->n + j], OPERAND_STATE, j);
 		drop_identity(program);
 	}
 }
@@ -430,7 +430,7 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 	for (int i = 0; i < n; i++) {
 		struct assignment *a = new_assignment(program, step, i, true);
 		for (int j = 0; j < n; j++)
-			add_term(a, &step->branch->whole->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
+			add_term(a, &step->branch->full->drift[i * n + j], OPERAND_STATE, system->velocity[j]);
 		drop_identity(program);
 	}
 	write_kicks(program, step);
@@ -442,7 +442,7 @@ static void write_kick_drift_kick(struct program *program, const struct step *st
 
 struct program *linear_program(const struct step *step)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	struct program *program = NEW(struct program);
 	program->compensated = step->is.two_words;
 	program->tuned = step->model->params.tuning != NULL;

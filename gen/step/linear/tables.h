@@ -76,7 +76,7 @@ struct branch {
 	struct linear system;       /* with what the scheme holds taken out of C and K */
 	struct resolvent *resolvent; /* of `system` */
 	struct table **table;       /* of regions: of the step, then of the rungs of its ladder */
-	struct table *whole;        /* of the whole step: the first */
+	struct table *full;         /* of the whole step: the first */
 	int halvings;               /* of a region: log2 of the pieces of a step in which crossings are looked for */
 	int rungs, spacing;         /* lengths of pieces below h: from those on, so many halvings apart */
 };

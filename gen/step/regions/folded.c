@@ -2,7 +2,7 @@
 /* Of regions whose tables an instance has: what of x stays from step to step, 1 and held params, and what is never
  * above 1 is gathered beforehand, so that a step that stays clear has sums over the rest alone. */
 #include "inner.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
 
@@ -12,7 +12,7 @@
 bool is_bounded_load(const struct step *step, int load)
 {
 	const struct load *l = &step->branch->system.load[load];
-	return step->layout.load[load] >= 0 && l->powers == 1 && mpq_sgn(l->wave->a) == 0;
+	return step->layout.load[load] >= 0 && l->powers == 1 && mpq_sgn(l->forcing->a) == 0;
 }
 
 int *staying_columns(const struct step *step, int *count)
@@ -22,7 +22,7 @@ int *staying_columns(const struct step *step, int *count)
 	int *column = ARRAY(int, layout->size);
 	*count = 0;
 	for (int l = 0; l < system->loads; l++)
-		if (layout->load[l] >= 0 && is_polynomial(system->load[l].wave))
+		if (layout->load[l] >= 0 && is_polynomial(system->load[l].forcing))
 			column[(*count)++] = layout->load[l];
 	for (int i = step->model->spec->count.inputs; i < system->inputs; i++)
 		column[(*count)++] = layout->input[i];
@@ -68,13 +68,13 @@ static void gather_piece(const struct step *step, struct region_piece *piece)
 {
 	const struct linear *system = &step->branch->system;
 	const struct layout *layout = &step->layout;
-	int size = layout->size, expressions = step->model->switching->expressions, stays;
+	int size = layout->size, functions = step->model->switching->functions, stays;
 	const int *column = staying_columns(step, &stays);
 	piece->added = ARRAY(double, system->states);
 	for (int i = 0; i < system->states; i++)
 		for (int k = 0; k < stays; k++)
 			piece->added[i] += piece->Phi[i * size + column[k]] * value_of_column(step, column[k]);
-	for (int i = 0; i < expressions; i++) {
+	for (int i = 0; i < functions; i++) {
 		const double *off = piece->off + i * size;
 		double still = 0;
 		for (int k = 0; k < stays; k++)
@@ -86,7 +86,7 @@ static void gather_piece(const struct step *step, struct region_piece *piece)
 	}
 }
 
-/* Of each expression its breakpoints between open ends, less what stays of its row */
+/* Of each switching function its breakpoints between open ends, less what stays of its row */
 static double *edges_of(const struct step *step, const struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
@@ -94,12 +94,12 @@ static double *edges_of(const struct step *step, const struct pieces *pieces)
 	const double *at = pieces->breakpoint;
 	int stays;
 	const int *column = staying_columns(step, &stays);
-	for (int i = 0; i < s->expressions; i++) {
+	for (int i = 0; i < s->functions; i++) {
 		double shift = 0;
 		for (int k = 0; k < stays; k++)
 			shift += pieces->row[i * step->layout.size + column[k]] * value_of_column(step, column[k]);
 		*next++ = -OPEN_END;
-		for (int k = 0; k < s->expression[i].breaks; k++)
+		for (int k = 0; k < s->function[i].breaks; k++)
 			*next++ = *at++ - shift;
 		*next++ = OPEN_END;
 	}
@@ -109,8 +109,8 @@ static double *edges_of(const struct step *step, const struct pieces *pieces)
 int edges_of_regions(const struct switching *s)
 {
 	int edges = 0;
-	for (int i = 0; i < s->expressions; i++)
-		edges += s->expression[i].breaks + 2;
+	for (int i = 0; i < s->functions; i++)
+		edges += s->function[i].breaks + 2;
 	return edges;
 }
 

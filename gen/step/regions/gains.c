@@ -10,7 +10,7 @@
 static void set_words(const struct step *step, double a, double b, double low, double *first, double *second)
 {
 	double sum = a + b, part = sum - a, error = (a - (sum - part)) + (b - part);
-	*first = step->model->asked.single ? (float)sum : sum;
+	*first = step->model->request.single ? (float)sum : sum;
 	*second = error + (sum - *first) + low;
 }
 
@@ -24,7 +24,7 @@ static void set_coefficient(const struct coefficient *c, double *first, double *
  * one direction: half of the bits go to the second word, so that the sum is exact where it is not much larger. */
 static void set_acting(const struct step *step, double *first, double *second)
 {
-	const int kept = step->model->asked.single ? 12 : 26;
+	const int kept = step->model->request.single ? 12 : 26;
 	int exponent;
 	(void)frexp(*first, &exponent);
 	double value = *first, top = ldexp(rint(ldexp(value, kept - exponent)), exponent - kept);
@@ -41,7 +41,7 @@ void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double 
 		int n = load->columns, at = layout->load[l];
 		for (int i = 0; i < n * n && at >= 0; i++) {
 			struct response *response = response_of_load_state(load, i / n, i % n);
-			const struct coefficient c = response_value(response, d, low, step->model->asked.step_at,
+			const struct coefficient c = response_value(response, d, low, step->model->request.step_at,
 								    column_text(load, i / n));
 			const int cell = (at + i / n) * layout->size + at + i % n;
 			Phi[cell] = c.value;

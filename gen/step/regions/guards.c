@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of regions with dry friction: what ends each of them, and what holds states there. A guard is a row over x: of an
- * expression that comes to an end of its interval, or of a force that comes to what friction can hold. */
+/* Of regions with dry friction: what ends each of them, and what holds states there. A guard is a row over x: of a
+ * switching function that comes to an end of its interval, or of a force that comes to what friction can hold. */
 #include "inner.h"
 #include "model/contacts/friction.h"
 #include "guards.h"
@@ -10,7 +10,7 @@
 
 static bool same_guard(const struct guard_key *a, const struct guard_key *b)
 {
-	return a->expression == b->expression && a->region == b->region && a->release == b->release &&
+	return a->function == b->function && a->region == b->region && a->release == b->release &&
 	       a->upward == b->upward && a->segment == b->segment;
 }
 
@@ -46,47 +46,47 @@ static double *reversed(int size, const double *row, bool upward)
 	return result;
 }
 
-/* The ends of an interval of an expression */
+/* The ends of an interval of a switching function */
 static void guard_interval(const struct step *step, const struct pieces *pieces, struct guards *g, int region,
-			   int expression, int first)
+			   int function, int first)
 {
 	const struct switching *s = step->model->switching;
-	const struct expression *e = &s->expression[expression];
-	int size = step->layout.size, interval = interval_of(s, region, expression);
+	const struct switching_function *e = &s->function[function];
+	int size = step->layout.size, interval = interval_of(s, region, function);
 	int segment = segment_of_region(s, region);
 	for (int upward = 0; upward < 2; upward++) {
 		int breakpoint = interval - !upward;
-		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&s->region[region], expression, upward))
+		if (breakpoint < 0 || breakpoint == e->breaks || is_released(&s->region[region], function, upward))
 			continue;
 		double at = pieces->breakpoint[first + breakpoint];
-		struct guard guard = { .expression = expression,
+		struct guard guard = { .function = function,
 				       .breakpoint = breakpoint,
 				       .upward = upward,
 				       .leads = upward ? e->stride : -e->stride,
 				       .limit = upward || at == 0 ? at : -at,
-				       .impact = impact_at(s, segment, expression, e->at[breakpoint], upward) };
-		if (guard.impact < 0 && impact_resting(s, segment, expression, interval + (upward ? 1 : -1)) >= 0)
+				       .impact = impact_at(s, segment, function, e->at[breakpoint], upward) };
+		if (guard.impact < 0 && impact_resting(s, segment, function, interval + (upward ? 1 : -1)) >= 0)
 			guard.leads *= 2;       /* past the interval of rest, which impacts alone lead to */
 		add_guard(g, size, s->region[region].system,
-			  reversed(size, pieces->rows[segment] + expression * size, upward),
-			  (struct guard_key){ .expression = expression, .upward = upward, .segment = segment }, guard);
+			  reversed(size, pieces->rows[segment] + function * size, upward),
+			  (struct guard_key){ .function = function, .upward = upward, .segment = segment }, guard);
 	}
 }
 
-/* What releases an expression that is held */
-static void guard_releases(const struct step *step, struct guards *g, int region, int expression)
+/* What releases a switching function that is held */
+static void guard_releases(const struct step *step, struct guards *g, int region, int function)
 {
 	const struct switching *s = step->model->switching;
-	int stride = s->expression[expression].stride, interval = interval_of(s, region, expression);
+	int stride = s->function[function].stride, interval = interval_of(s, region, function);
 	for (int k = 0; k < s->region[region].releases; k++) {
 		const struct release *release = &s->region[region].release[k];
 		double *row = ARRAY(double, step->layout.size);
-		if (release->expression != expression)
+		if (release->function != function)
 			continue;
 		row_over_x(step, release->row, 0, row);
 		add_guard(g, step->layout.size, s->region[region].system, row,
-			  (struct guard_key){ .expression = -1, .region = region, .release = k },
-			  (struct guard){ .expression = expression,
+			  (struct guard_key){ .function = -1, .region = region, .release = k },
+			  (struct guard){ .function = function,
 					  .breakpoint = interval - !release->upward,
 					  .upward = release->upward,
 					  .leads = release->upward ? stride : -stride,
@@ -135,8 +135,8 @@ static struct impact_row impact_in(const struct step *step, struct guards *g, in
 	const struct switching *s = step->model->switching;
 	const struct impact *impact = &s->impact[number];
 	const struct impact_law *impact_law = &impact->in[segment];
-	const struct expression *e = &s->expression[impact_law->expression];
-	struct impact_row new = { .expression = impact_law->expression, .upward = impact_law->upward,
+	const struct switching_function *e = &s->function[impact_law->function];
+	struct impact_row new = { .function = impact_law->function, .upward = impact_law->upward,
 			      .rest = rest_of(s, segment, impact),
 			      .still = -1, .restitution = round_rational(impact_law->restitution) };
 	while (!mpq_equal(e->at[new.breakpoint], impact_law->at))
@@ -221,12 +221,12 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	for (int r = 0; r < s->regions; r++) {
 		g.first[r] = g.guards;
 		hold_region(step, &g, r);
-		for (int e = 0, first = 0; e < s->expressions; first += s->expression[e++].breaks)
+		for (int e = 0, first = 0; e < s->functions; first += s->function[e++].breaks)
 			if (!s->region[r].possible)
 				continue;
 			else {
 				guard_releases(step, &g, r, e);
-				if (!is_stick(&s->expression[e], interval_of(s, r, e)))
+				if (!is_stick(&s->function[e], interval_of(s, r, e)))
 					guard_interval(step, pieces, &g, r, e, first);
 			}
 	}
@@ -237,11 +237,11 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		for (int i = 0; i < s->impacts; i++)
 			g.impact[k * s->impacts + i] = impact_in(step, &g, i, k);
 	bound_rows_of_guards(step, pieces, &g);
-	g.amplitude = ARRAY(double, (size_t)(s->segments * s->expressions));
+	g.amplitude = ARRAY(double, (size_t)(s->segments * s->functions));
 	g.row_amplitude = ARRAY(double, g.rows);
 	for (int k = 0; k < s->segments; k++)
-		for (int e = 0; e < s->expressions; e++)
-			g.amplitude[k * s->expressions + e] =
+		for (int e = 0; e < s->functions; e++)
+			g.amplitude[k * s->functions + e] =
 				size_of_bounded(step, pieces->rows[k] + e * step->layout.size);
 	for (int i = 0; i < g.rows; i++)
 		g.row_amplitude[i] = size_of_bounded(step, g.row + i * step->layout.size);

@@ -11,19 +11,19 @@ struct pieces;
 /* ---- guards.c: events of regions with dry friction ---- */
 
 struct guard {                      /* row . x must not become greater than the limit */
-	int row, expression, breakpoint;
+	int row, function, breakpoint;
 	bool upward;
 	int leads;                  /* to the region of this number, less that where it stands */
 	double limit;
 	int impact;                 /* that begins there; -1: none */
 };
 struct impact_row {                 /* an impact */
-	int expression, breakpoint;
+	int function, breakpoint;
 	bool upward;
 	int rest;                   /* the interval in which it rests; -1: it is no bounce */
 	int jump, still;            /* sets of assignments: its jump; that of a bounce without restitution */
 	double *speed;              /* of its guard, as a row over x */
-	double *back;               /* over x: so much times how far the expression is beyond, and it is on its guard */
+	double *back; /* over x: so much times how far the switching function is beyond, and it is on its guard */
 	double restitution, amplitude; /* amplitude: the sizes of its speed's factors of cos and sin */
 };
 struct held_state {                 /* x[state] = value . x */
@@ -32,7 +32,8 @@ struct held_state {                 /* x[state] = value . x */
 	enum retuned_kind kind;     /* where it comes from: a row of the regions */
 	int of, index;
 };
-struct guard_key { int expression, region, release, segment; bool upward; }; /* up or down; expression -1: a release */
+/* up or down; switching function -1: a release */
+struct guard_key { int function, region, release, segment; bool upward; };
 struct guards {
 	bool apart;                 /* rows that are equal may become others: params are tunable */
 	int *first;                 /* per region, and one more: its guards, of those of all */
@@ -45,7 +46,7 @@ struct guards {
 	double *row, *slope, *second, *fourth;
 	int reaches, *reach_at;     /* of each row: where it begins in reach, reaches x size, as in pl_ladder */
 	double *reach;
-	/* per segment of time and expression, per row: the sizes of its factors of cos and sin */
+	/* per segment of time and switching function, per row: the sizes of its factors of cos and sin */
 	double *amplitude, *row_amplitude;
 	int sets, *set;             /* per set, and one more: the first of its assignments */
 	int *hold;                  /* per region: the set that holds its states; -1: none */

@@ -78,7 +78,7 @@ int room_for_rungs(const struct step *step)
 
 bool has_ladder(const struct step *step)
 {
-	bool any = step->model->params.retuned && step->model->switching->expressions > 0;
+	bool any = step->model->params.retuned && step->model->switching->functions > 0;
 	for (int k = 0; k < step->branches; k++)
 		any = any || step->branch[k].rungs > 0;
 	return any;
@@ -139,7 +139,7 @@ double *reach_of_rows(const struct step *step, int branch, const double *A, int 
 	if (b->rungs > 0)
 		pl_region_reach(size, round_rational(step->model->h), b->halvings, b->spacing, A, rows, row, reach,
 				work);
-	for (int i = 0; i < cells && step->model->asked.single; i++)
+	for (int i = 0; i < cells && step->model->request.single; i++)
 		reach[i] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
 	return reach;
 }

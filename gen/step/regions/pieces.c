@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a piecewise-linear model finds its crossings with: the expressions that breakpoints divide, and how fast each
- * may change within a piece of the step. */
+/* What a piecewise-linear model finds its crossings with: the switching functions that breakpoints divide, and how fast
+ * each may change within a piece of the step. */
 #include "inner.h"
 #include "model/tunable/elsewhere.h"
-#include "model/regions/expressions.h"
+#include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
 #include <math.h>
 #include <string.h>
 
-double *whole_step_of(const struct step *step, int branch)
+double *full_step_of(const struct step *step, int branch)
 {
-	return Phi_over(step, step->branch[branch].whole, 0);
+	return Phi_over(step, step->branch[branch].full, 0);
 }
 
 static double *finite_slopes(const struct step *step, int branch)
@@ -24,7 +24,7 @@ static double *finite_slopes(const struct step *step, int branch)
 	return A;
 }
 
-/* ---- expressions as rows over x ---- */
+/* ---- switching functions as rows over x ---- */
 
 static double word_of(const struct step *step, mpq_srcptr number, bool second)
 {
@@ -32,25 +32,25 @@ static double word_of(const struct step *step, mpq_srcptr number, bool second)
 	return second ? c.low : c.value;
 }
 
-static void fill_row(const struct step *step, const struct output *expression, int segment, bool second, double *row)
+static void fill_row(const struct step *step, const struct output *function, int segment, bool second, double *row)
 {
 	const int size = step->layout.size;
 	RATIONALS *exact = rationals(size);
-	row_of_output(&step->layout, &step->branch->system, expression, step->shown->model->system.segments, segment,
+	row_of_output(&step->layout, &step->branch->system, function, step->shown->model->system.segments, segment,
 		      exact);
 	for (int i = 0; i < size; i++)
 		row[i] = word_of(step, exact[i], second);
 }
 
-void row_over_x(const struct step *step, const struct output *expression, int segment, double *row)
+void row_over_x(const struct step *step, const struct output *function, int segment, double *row)
 {
-	fill_row(step, expression, segment, false, row);
+	fill_row(step, function, segment, false, row);
 }
 
-void row_in_words(const struct step *step, const struct output *expression, int segment, double *row)
+void row_in_words(const struct step *step, const struct output *function, int segment, double *row)
 {
-	fill_row(step, expression, segment, false, row);
-	fill_row(step, expression, segment, true, row + step->layout.size);
+	fill_row(step, function, segment, false, row);
+	fill_row(step, function, segment, true, row + step->layout.size);
 }
 
 static double **rows_of(const struct step *step)
@@ -58,9 +58,9 @@ static double **rows_of(const struct step *step)
 	const struct switching *s = step->model->switching;
 	double **row = ARRAY(double *, s->segments);
 	for (int segment = 0; segment < s->segments; segment++) {
-		row[segment] = ARRAY(double, (size_t)s->expressions * (size_t)step->layout.size);
-		for (int i = 0; i < s->expressions; i++)
-			row_over_x(step, s->expression[i].row, segment, row[segment] + i * step->layout.size);
+		row[segment] = ARRAY(double, (size_t)s->functions * (size_t)step->layout.size);
+		for (int i = 0; i < s->functions; i++)
+			row_over_x(step, s->function[i].row, segment, row[segment] + i * step->layout.size);
 	}
 	return row;
 }
@@ -69,12 +69,12 @@ static double *breakpoints_of(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	int count = 0;
-	for (int i = 0; i < s->expressions; i++)
-		count += s->expression[i].breaks;
+	for (int i = 0; i < s->functions; i++)
+		count += s->function[i].breaks;
 	double *breakpoint = ARRAY(double, count), *next = breakpoint;
-	for (int i = 0; i < s->expressions; i++)
-		for (int k = 0; k < s->expression[i].breaks; k++)
-			*next++ = equation_number(step->model, s->expression[i].at[k]).value;
+	for (int i = 0; i < s->functions; i++)
+		for (int k = 0; k < s->function[i].breaks; k++)
+			*next++ = equation_number(step->model, s->function[i].at[k]).value;
 	return breakpoint;
 }
 
@@ -151,33 +151,33 @@ static void bound_row(int n, const struct growth *growth, double *row, double fa
 	}
 }
 
-/* factor times the slope of each expression */
+/* factor times the slope of each switching function */
 static double *slope_rows(const struct step *step, const double *rows, const double *A, double factor)
 {
-	int size = step->layout.size, expressions = step->model->switching->expressions;
-	double *slope = ARRAY(double, (size_t)expressions * (size_t)size);
-	memcpy(slope, rows, (size_t)expressions * (size_t)size * sizeof *slope);
-	for (int i = 0; i < expressions; i++)
+	int size = step->layout.size, functions = step->model->switching->functions;
+	double *slope = ARRAY(double, (size_t)functions * (size_t)size);
+	memcpy(slope, rows, (size_t)functions * (size_t)size * sizeof *slope);
+	for (int i = 0; i < functions; i++)
 		times_matrix(size, slope + i * size, A);
-	for (int j = 0; j < expressions * size; j++)
+	for (int j = 0; j < functions * size; j++)
 		slope[j] = factor * slope[j];
 	return slope;
 }
 
-/* factor times a bound of each expression's derivative of this order */
+/* factor times a bound of each switching function's derivative of this order */
 static double *bound_rows(const struct step *step, const double *rows, const double *A,
 			  const struct growth *growth, int order, double factor)
 {
-	int size = step->layout.size, expressions = step->model->switching->expressions;
+	int size = step->layout.size, functions = step->model->switching->functions;
 	SCRATCH double *row = ARRAY(double, size);
-	double *bound = ARRAY(double, (size_t)expressions * (size_t)size);
-	for (int i = 0; i < expressions; i++) {
+	double *bound = ARRAY(double, (size_t)functions * (size_t)size);
+	for (int i = 0; i < functions; i++) {
 		memcpy(row, rows + i * size, (size_t)size * sizeof *row);
 		for (int k = 0; k < order; k++)
 			times_matrix(size, row, A);
 		bound_row(size, growth, row, factor, bound + i * size);
 	}
-	for (int j = 0; j < expressions * size && step->model->asked.single; j++)
+	for (int j = 0; j < functions * size && step->model->request.single; j++)
 		bound[j] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
 	return bound;
 }
@@ -191,7 +191,7 @@ void bend_of_row(const struct step *step, const double *A, double h, const doubl
 	times_matrix(size, second, A);
 	times_matrix(size, second, A);
 	bound_row(size, &growth, second, h * h / 8, bend);
-	for (int j = 0; j < size && step->model->asked.single; j++)
+	for (int j = 0; j < size && step->model->request.single; j++)
 		bend[j] *= 1 + ldexp(1, -22);           /* still a bound when it is printed as a float */
 	discard(growth.E);
 }
@@ -216,7 +216,7 @@ void bounds_of_rows(const struct step *step, const struct pieces *pieces, int br
 			double *bound = (order == 2 ? second : fourth) + i * size;
 			memcpy(lost, gone, (size_t)size * sizeof *lost);
 			bound_row(size, &growth, lost, order == 2 ? d * d / 8 : d * d * d * d / 384, bound);
-			for (int j = 0; j < size && step->model->asked.single; j++)
+			for (int j = 0; j < size && step->model->request.single; j++)
 				bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
 		}
 	}
@@ -231,25 +231,25 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	piece->slope = slope_rows(step, piece->row, piece->slopes, d / 3);
 	piece->second = bound_rows(step, piece->row, piece->slopes, &growth, 2, d * d / 8);
 	piece->fourth = bound_rows(step, piece->row, piece->slopes, &growth, 4, d * d * d * d / 384);
-	piece->reach = reach_of_rows(step, branch, piece->slopes, step->model->switching->expressions, piece->row);
+	piece->reach = reach_of_rows(step, branch, piece->slopes, step->model->switching->functions, piece->row);
 	discard(growth.E);
 }
 
 /* ---- a step over the whole of h, which most often is seen in a line to stay clear ---- */
 
-/* The least and the largest that each expression may be: region by region, expressions of each */
+/* The least and the largest that each switching function may be: region by region, switching functions of each */
 static void fill_intervals(const struct step *step, struct pieces *pieces)
 {
 	const struct switching *s = step->model->switching;
-	size_t cells = (size_t)s->regions * (size_t)s->expressions;
+	size_t cells = (size_t)s->regions * (size_t)s->functions;
 	pieces->low = ARRAY(double, cells);
 	pieces->high = ARRAY(double, cells);
 	for (int r = 0; r < s->regions; r++)
-		for (int i = 0, first = 0; i < s->expressions; first += s->expression[i++].breaks) {
-			int interval = interval_of(s, r, i), cell = r * s->expressions + i;
+		for (int i = 0, first = 0; i < s->functions; first += s->function[i++].breaks) {
+			int interval = interval_of(s, r, i), cell = r * s->functions + i;
 			const double *at = pieces->breakpoint + first + interval;
 			pieces->low[cell] = interval > 0 ? at[-1] : -OPEN_END;
-			pieces->high[cell] = interval < s->expression[i].breaks ? at[0] : OPEN_END;
+			pieces->high[cell] = interval < s->function[i].breaks ? at[0] : OPEN_END;
 		}
 }
 
@@ -283,7 +283,7 @@ static void fold_loads(const struct step *step, double *bound, double *still)
 		for (int k = 0; k < load->columns; k++)
 			at[k] = 0;
 	}
-	*still *= step->model->asked.single ? 1 + ldexp(1, -22) : 1 + 1e-9;
+	*still *= step->model->request.single ? 1 + ldexp(1, -22) : 1 + 1e-9;
 }
 
 /* h |e'|, which is above |e|, of what a Taylor polynomial of this degree leaves out over 0 .. h, and what rounding may
@@ -320,11 +320,11 @@ static void gather_loads(const struct step *step, const bool *bounded, double *b
 
 static double *slack_rows(const struct step *step, const double *rows, const double *A, int degree)
 {
-	int size = step->layout.size, expressions = step->model->switching->expressions;
+	int size = step->layout.size, functions = step->model->switching->functions;
 	SCRATCH double *term = ARRAY(double, size);
-	double *slack = ARRAY(double, (size_t)(expressions * size));
-	double epsilon = ldexp(1, step->model->asked.single ? -23 : -52);
-	for (int i = 0; i < expressions; i++) {
+	double *slack = ARRAY(double, (size_t)(functions * size));
+	double epsilon = ldexp(1, step->model->request.single ? -23 : -52);
+	for (int i = 0; i < functions; i++) {
 		for (int j = 0; j < size; j++) {
 			term[j] = fabs(rows[i * size + j]);
 			slack[i * size + j] = 8 * epsilon * term[j];    /* as in the search */
@@ -347,20 +347,20 @@ static double *turns_of(const struct step *step, int branch)
 	return turns;
 }
 
-static void fill_whole(const struct step *step, const struct pieces *pieces, int branch)
+static void fill_full(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, h);
 	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
-	piece->still = ARRAY(double, step->model->switching->expressions);
+	piece->still = ARRAY(double, step->model->switching->functions);
 	discard(growth.E);
 }
 
 static void fill_crossing(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];
-	int size = step->layout.size, expressions = step->model->switching->expressions;
+	int size = step->layout.size, functions = step->model->switching->functions;
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(size, piece->slopes, h);
 	piece->turn = slope_rows(step, piece->row, piece->slopes, h / 3);
@@ -368,7 +368,7 @@ static void fill_crossing(const struct step *step, const struct pieces *pieces, 
 	piece->bend = bound_rows(step, piece->row, piece->slopes, &growth, 4, h * h * h * h / 384);
 	piece->turns = turns_of(step, branch);
 	piece->slack = slack_rows(step, piece->row, piece->slopes, pieces->degree);
-	for (int i = 0; i < expressions; i++) {
+	for (int i = 0; i < functions; i++) {
 		fold_loads(step, piece->off + i * size, &piece->still[i]);
 		gather_loads(step, pieces->bounded, piece->slack + i * size);
 		gather_loads(step, pieces->bounded, piece->third + i * size);
@@ -384,7 +384,7 @@ static double largest_of(const struct step *step, const struct pieces *pieces)
 	for (int k = 0; k < step->branches; k++)
 		for (int i = 0; i < cells; i++)
 			factor = fmax(factor, fabs(pieces->piece[k].Phi[i]));
-	return ldexp(step->model->asked.single ? LARGE_FLOAT : LARGE_ENOUGH, -ilogb(factor));
+	return ldexp(step->model->request.single ? LARGE_FLOAT : LARGE_ENOUGH, -ilogb(factor));
 }
 
 /* 1/k!, k = 0 .. degree */
@@ -404,7 +404,7 @@ static void fill_check(const struct step *step, struct pieces *pieces)
 {
 	pieces->bounded = bounded_entries(step);
 	for (int k = 0; k < step->branches; k++)
-		fill_whole(step, pieces, k);
+		fill_full(step, pieces, k);
 	pieces->large = largest_of(step, pieces);
 }
 
@@ -427,11 +427,11 @@ struct pieces pieces_of(const struct step *step)
 		pieces.piece[k].row = pieces.rows[step->model->switching->system_segment[k]];
 	}
 	for (int k = 0; k < step->branches; k++) {
-		pieces.piece[k].Phi = whole_step_of(step, k);
-		pieces.piece[k].gain = gain_of(step, step->branch[k].whole, 0);
+		pieces.piece[k].Phi = full_step_of(step, k);
+		pieces.piece[k].gain = gain_of(step, step->branch[k].full, 0);
 		pieces.piece[k].rung = rungs_of(step, k);
 	}
-	for (int k = 0; k < step->branches && step->model->switching->expressions > 0; k++)
+	for (int k = 0; k < step->branches && step->model->switching->functions > 0; k++)
 		fill_bounds(step, &pieces, k);
 	if (step->regions.event_check.is_made)
 		fill_check(step, &pieces);

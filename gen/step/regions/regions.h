@@ -19,35 +19,34 @@ long products_of_unmet(const struct step *step); /* of the check for events over
 /* ---- pieces.c: what a piecewise-linear model finds its crossings with ---- */
 
 struct region_piece {               /* of a branch, d = h 2^-halvings is its shortest piece; x as in struct layout */
-	double *row;                /* of each expression: row . x, expressions x size */
+	double *row;                /* of each switching function: row . x, switching functions x size */
 	double *slopes;             /* A of x' = A x, size x size [x/s]; second words behind them */
 	double *Phi;                /* e^{A h}, size x size */
 	double *gain;               /* e^{A h} - I in two words, 2 size x size: first ones, then second ones; or NULL */
 	double **rung;              /* as in pl_ladder, the shortest first */
-	double *reach;              /* of each expression, of each rung but the first, and of h */
-	double *slope;              /* slope . x is d/3 times the slope of each expression; expressions x size */
+	double *reach;              /* of each switching function, of each rung but the first, and of h */
+	double *slope; /* slope . x is d/3 times the slope of each switching function; switching functions x size */
 	double *second, *fourth;    /* second . |x(0)|, fourth . |x(0)| bound, on 0 .. d, d^2/8 times the second and */
-				    /* d^4/384 times the fourth derivative of each; expressions x size */
-	/* Where a step is checked for events over h: each expression is off its chord by at most off . |x(0)| + still.
-	 * With the fast path: rounding and what its Taylor polynomial leaves out make its value and h times its slope
-	 * wrong by at most slack . |x(0)|; turn and bend are slope and fourth
-	 * over h */
+				    /* d^4/384 times the fourth derivative of each; switching functions x size */
+	/* Where a step is checked for events over h: each switching function is off its chord by at most off . |x(0)| +
+	 * still. With the fast path: rounding and what its Taylor polynomial leaves out make its value and h times its
+	 * slope wrong by at most slack . |x(0)|; turn and bend are slope and fourth over h */
 	double *off, *still, *slack, *turn, *bend;
 	double *added;              /* of a retuned model: what stays of x adds to each state over h */
 	double *third;              /* third . |x(0)| bounds h^3/24 times the third derivative of each */
 	double *turns;              /* h A */
 };
 struct pieces {
-	double **rows;              /* of each expression: row . x, expressions x size; in each segment of time */
+	double **rows; /* of each switching function: row . x, switching functions x size; in each segment of time */
 	double *row;                /* in the first */
-	double *breakpoint;         /* those of the first expression, rising; of the second; ... */
+	double *breakpoint;         /* those of the first switching function, rising; of the second; ... */
 	struct region_piece *piece;        /* per branch */
 	/* Where a step is checked for events over h: */
 	bool *bounded;              /* per entry of x: never above 1, and with the fast path part of `still` */
 	double large;               /* no number of a step overflows where |x| is smaller, other entries summed */
 	double *edge;               /* of a retuned model: see folded.c */
 	/* With the fast path: */
-	double *low, *high;         /* bounds of each expression in each region: regions x expressions */
+	double *low, *high; /* bounds of each switching function in each region: regions x switching functions */
 	int degree;
 	double *weight;             /* 1/k!, k = 0 .. degree */
 };
@@ -55,7 +54,7 @@ struct pieces {
 struct pieces pieces_of(const struct step *step);
 #define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
 #define LARGE_FLOAT (0x1p60)
-double *whole_step_of(const struct step *step, int branch);  /* e^{A h}, size x size */
+double *full_step_of(const struct step *step, int branch);   /* e^{A h}, size x size */
 bool has_ladder(const struct step *step);
 int room_for_rungs(const struct step *step);
 double *Phi_over(const struct step *step, const struct table *table, int halvings);
@@ -72,6 +71,6 @@ int *staying_columns(const struct step *step, int *count);  /* of x: 1, and held
 bool any_stays(const struct step *step);
 bool any_still(const struct step *step);                    /* that, or something is never above 1 */
 int param_of_column(const struct step *step, int column);   /* of such a one; -1: it is 1 */
-int edges_of_regions(const struct switching *s);            /* breakpoints, and two open ends of each expression */
+int edges_of_regions(const struct switching *s); /* breakpoints, and two open ends of each switching function */
 
 #endif

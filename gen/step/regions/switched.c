@@ -31,13 +31,13 @@ static const char *no_check(const struct step *step)
 	for (int k = 0; k < step->branches; k++)
 		turns = turns || step->branch[k].halvings > !events;
 	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
-	return step->model->asked.single                 ? "it is smaller, for the target float"
+	return step->model->request.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
 	       : events && step->model->params.retuned          ? "what sticks, slips and bounces has tunable params"
 	       : events && step->is.two_words ? "what sticks, slips and bounces is kept in two words"
 	       : turns ? format("the fastest pole turns by more than %d in a step", events ? 1 : 2)
-	       : s->regions * s->expressions > BOUNDS     ? "there are too many regions"
-	       : step->layout.size * (step->layout.states + s->expressions) > TERMS ? "it would be more than a page"
+	       : s->regions * s->functions > BOUNDS     ? "there are too many regions"
+	       : step->layout.size * (step->layout.states + s->functions) > TERMS ? "it would be more than a page"
 	       : step->model->params.retuned && matrices > LIMIT_TUNED_NUMBERS
 		       ? "an instance would have too many numbers, for tunable params"
 		       : NULL;
@@ -66,8 +66,8 @@ int products_of_piece(const struct step *step)
 	bool ladder = false;
 	for (int k = 0; k < step->branches; k++)
 		ladder = ladder || step->branch[k].rungs > 0;
-	int size = step->layout.size, expressions = step->model->switching->expressions;
-	return size * (products_of_words(step) * size + (ladder ? 4 * size + 3 * expressions + 1 : 6 * expressions));
+	int size = step->layout.size, functions = step->model->switching->functions;
+	return size * (products_of_words(step) * size + (ladder ? 4 * size + 3 * functions + 1 : 6 * functions));
 }
 
 /* Where guards end regions: x on, what is held at both ends, each guard there and between; of the region with most */
@@ -77,10 +77,10 @@ long products_of_unmet(const struct step *step)
 	int most = 0;
 	for (int r = 0; r < s->regions; r++) {
 		int guards = s->region[r].releases;
-		for (int e = 0; e < s->expressions; e++) {
+		for (int e = 0; e < s->functions; e++) {
 			const int interval = interval_of(s, r, e);
-			if (!is_stick(&s->expression[e], interval))
-				guards += (interval > 0) + (interval < s->expression[e].breaks);
+			if (!is_stick(&s->function[e], interval))
+				guards += (interval > 0) + (interval < s->function[e].breaks);
 		}
 		const int rows = 2 * s->region[r].holds + 3 * guards;
 		most = s->region[r].possible && rows > most ? rows : most;
@@ -100,12 +100,12 @@ static void plan_check(struct step *step)
 		any = any || step->branch[k].halvings > 0;
 	if (!step->regions.event_check.is_made)
 		return;
-	int expressions = step->model->switching->expressions;
+	int functions = step->model->switching->functions;
 	step->program->multiplications =
 		has_events(step->model->switching)
 			? (int)products_of_unmet(step)
-			: (products_of_words(step) * step->layout.states + expressions) * step->layout.size;
-	step->program->additions = step->program->multiplications + 2 * expressions;
+			: (products_of_words(step) * step->layout.states + functions) * step->layout.size;
+	step->program->additions = step->program->multiplications + 2 * functions;
 	step->regions.event_check.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
@@ -113,7 +113,7 @@ static void halve_region(struct step *step, int k)
 {
 	step->branch[k].halvings = series_halvings(step, k);
 	if (step->branch[k].halvings > LIMIT_PIECES)
-		error(step->model->asked.step_at, "a smaller step would do",
+		error(step->model->request.step_at, "a smaller step would do",
 		      "the largest pole times h is above 2^%d: too short pieces of a step to look for crossings in",
 		      LIMIT_PIECES);
 }
@@ -123,7 +123,7 @@ static void plan_region(struct step *step, int k)
 	struct branch *b = &step->branch[k];
 	plan_ladder(step, k);
 	b->table = ARRAY(struct table *, b->rungs + 1);
-	b->table[0] = b->whole = k == 0 ? b->whole : table_over(step, b, 0);
+	b->table[0] = b->full = k == 0 ? b->full : table_over(step, b, 0);
 	for (int r = 0; r < b->rungs; r++)
 		b->table[1 + r] = table_over(step, b, rung_halvings(b, r));
 	b->system.force_columns = 0;
@@ -134,20 +134,20 @@ static void plan_region(struct step *step, int k)
 /* At other values the same |pole| d of 1 at most, but no more is known of the terms. */
 static void plan_retuned(struct step *step)
 {
-	int least = step->model->asked.single ? 10 : 18, size = step->layout.size;
+	int least = step->model->request.single ? 10 : 18, size = step->layout.size;
 	least += (size < 16 ? size : 16) / 2;
 	step->series.degree = least > step->series.degree ? least : step->series.degree;
 }
 
 /* e^{A d} of each region for pieces d of the step, and the series that finds crossings. What is counted is without the
  * load states. */
-static void build_divided(struct step *step)
+static void build_switched(struct step *step)
 {
 	struct branch *first = step->branch;
 	int force_columns = first->system.force_columns; /* ramps of inputs, while tables are made */
 	choose_form_of_regions(step);
 	step->tables = 1;
-	first->whole = table_over(step, first, 0);
+	first->full = table_over(step, first, 0);
 	first->system.force_columns = 0;
 	step->layout = layout_with(&first->system, 0, loads_of_regions(step));
 	find_carries(step);
@@ -169,24 +169,24 @@ static void build_divided(struct step *step)
 
 void build_regions_step(struct step *step)
 {
-	build_divided(step);
+	build_switched(step);
 	count_regions(step, step->program->multiplications, step->program->additions);
 }
 
 /* ---- independent parts ---- */
 
 /* Of the part's own model, as if it were alone */
-static struct step *step_of_part(const struct step *whole, const struct region_part *part)
+static struct step *step_of_part(const struct step *full, const struct region_part *part)
 {
 	struct step *step = NEW(struct step);
 	step->model = part->model;
-	step->shown = whole;
-	step->is = whole->is;
+	step->shown = full;
+	step->is = full->is;
 	step->is.apart = false;
 	step->no.refresh = "a part is given its load states";
 	take_operators(step);
 	step->written = step->branch->resolvent;
-	build_divided(step);
+	build_switched(step);
 	return step;
 }
 
@@ -227,7 +227,7 @@ void build_parts_step(struct step *step)
 	choose_form_of_regions(step);
 	step->tables = 1;
 	first->table = tables_of(step->model, first->resolvent, &first->system, 1, wanted_piece(step, 0));
-	first->whole = first->table[0];
+	first->full = first->table[0];
 	first->system.force_columns = 0;
 	step->regions.parts = s->parts;
 	step->regions.part = ARRAY(struct step *, s->parts);

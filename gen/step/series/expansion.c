@@ -201,17 +201,17 @@ struct expansion *expansion_with_forces(const struct step *step, int order)
 
 /* ---- some of its sequences alone ---- */
 
-struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
+struct expansion *part_of_expansion(const struct step *step, const struct expansion *full, int order, int columns,
 				    int *column)
 {
 	struct expansion *x = NEW(struct expansion);
-	*x = (struct expansion){ .order = order, .count = whole->count, .expressions = whole->expressions,
-				 .expression = whole->expression, .columns = columns, .column = column, .alone = true,
-				 .slots = whole->slots };
+	*x = (struct expansion){ .order = order, .count = full->count, .functions = full->functions,
+				 .function = full->function, .columns = columns, .column = column, .alone = true,
+				 .slots = full->slots };
 	x->sequence = ARRAY(struct sequence, x->count);
 	x->column_top = ARRAY(int, x->columns);
 	for (int i = 0; i < x->count; i++)
-		x->sequence[i] = whole->sequence[i];
+		x->sequence[i] = full->sequence[i];
 	for (int c = 0; c < x->columns; c++)
 		x->column_top[c] = order;
 	read_off(step, x);

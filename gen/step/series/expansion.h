@@ -8,7 +8,7 @@
 #include "tape/tape.h"
 
 struct contacts;
-struct divided;
+struct series_switching;
 struct unresolved;
 
 struct expansion {
@@ -20,8 +20,8 @@ struct expansion {
 	bool *load;                 /* per load: read */
 	bool *input, *slope;        /* per input: read */
 	bool time, choices;         /* t is read; formulas are chosen by it */
-	int expressions;            /* what chooses formulas by the state: an event where one passes a breakpoint */
-	struct divided *expression;
+	int functions;              /* what chooses formulas by the state: an event where one passes a breakpoint */
+	struct series_switching *function;
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	int measured;               /* the first of them: their last terms count as those of states do */
@@ -51,14 +51,14 @@ struct tape *tape_of_recurrences(const struct recurrences *r);
 tape_ref recurrence_number(struct recurrences *r, int sequence, int k); /* 0 has a node too */
 void recurrence_set(struct recurrences *r, const char *target, int sequence, int k); /* target: its k-th */
 tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
-tape_ref recurrence_whole_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
+tape_ref recurrence_full_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
 
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
 /* the same with the remainder as sequences of their own; and some of its sequences alone, up to a lower order */
 struct expansion *expansion_with_forces(const struct step *step, int order);
-struct expansion *part_of_expansion(const struct step *step, const struct expansion *whole, int order, int columns,
+struct expansion *part_of_expansion(const struct step *step, const struct expansion *full, int order, int columns,
 				    int *column);
 struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
@@ -93,7 +93,7 @@ struct unresolved {
 	const struct form *form;
 	enum unresolved_kind kind;
 	int power;                  /* of TEETH */
-	int column;                 /* as of an expression */
+	int column;                 /* as of a switching function */
 };
 
 #endif

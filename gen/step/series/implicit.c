@@ -2,8 +2,8 @@
 /* How the newest coefficients enter the next ones. The k-th of a sum, product, quotient or root is linear in the k-th
  * of what it is made of, with factors that are the same for all k >= 1: the derivatives at the start. So the k-th of
  * what follows from a few others is an early part, of coefficients before k, and these factors, its gains, times their
- * k-th. The next coefficient of a state then waits for a multiplication and an addition, however deep the expression
- * is: latency decides what a series costs. */
+ * k-th. The next coefficient of a state then waits for a multiplication and an addition, however deep the switching
+ * function is: latency decides what a series costs. */
 #include "inner.h"
 
 enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows from; that a sum has anyway */

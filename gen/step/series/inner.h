@@ -3,17 +3,17 @@
 #ifndef PLGEN_STEP_SERIES_INNER_H
 #define PLGEN_STEP_SERIES_INNER_H
 
-#include "divided.h"
+#include "switching.h"
 #include "expansion.h"
 #include "sequences.h"
 
-/* ---- divided.c: formulas that the state chooses ---- */
+/* ---- switching.c: formulas that the state chooses ---- */
 
-/* Of a - b. The sequence of an expression that is new is to be made. */
+/* Of a - b. The sequence of a switching function that is new is to be made. */
 struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b);
 int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
 void rank_breakpoints(struct expansion *x);                  /* once all are there */
-int  breakpoint_rank(const struct expansion *x, int expression, int breakpoint);  /* how many are below it */
+int  breakpoint_rank(const struct expansion *x, int function, int breakpoint);    /* how many are below it */
 
 /* ---- recurrences.c: the coefficients as nodes of a tape ---- */
 

@@ -21,8 +21,8 @@ struct values {
 
 static double column_at_start(const struct load *load, int column)
 {
-	bool turns = oscillates(load->wave);
-	double phase = mpq_get_d(load->wave->p);
+	bool turns = oscillates(load->forcing);
+	double phase = mpq_get_d(load->forcing->p);
 	if (column / (turns ? 2 : 1) > 0)               /* t^k */
 		return 0;
 	return turns ? column ? sin(phase) : cos(phase) : 1;

@@ -201,7 +201,7 @@ static bool has_parts(const struct recurrences *r, int sequence)
 
 static tape_ref condition(struct recurrences *r, const struct sequence *s);
 
-tape_ref recurrence_whole_size(struct recurrences *r, int sequence)
+tape_ref recurrence_full_size(struct recurrences *r, int sequence)
 {
 	struct tape *t = r->t;
 	const struct sequence *s = sequence_of(r, sequence);
@@ -215,13 +215,13 @@ tape_ref recurrence_whole_size(struct recurrences *r, int sequence)
 		const struct sequence_term *term = &s->term[i];
 		if (term->kind == TERM_SEQUENCE && has_parts(r, term->a))
 			all = plus(t, all, times(t, tape_double(t, fabs(term->factor[0])),
-						 recurrence_whole_size(r, term->a)));
+						 recurrence_full_size(r, term->a)));
 		else
 			add_term(r, &sum, &last, term, 0, recurrence);
 	}
 	all = add_sizes(r, add_sizes(r, all, &sum), &last);
 	if (s->kind == SEQUENCE_CHOICE) {
-		tape_ref a = recurrence_whole_size(r, s->a), b = recurrence_whole_size(r, s->b);
+		tape_ref a = recurrence_full_size(r, s->a), b = recurrence_full_size(r, s->b);
 		all = tape_select(t, condition(r, s), a, b);
 	}
 	all = all == TAPE_NONE ? tape_number(t, 0) : all;
@@ -472,13 +472,13 @@ static tape_ref condition(struct recurrences *r, const struct sequence *s)
 	if (s->choice == CHOICE_BY_SEQUENCE)
 		return tape_binary(t, TAPE_UNEQUAL, recurrence(r, s->test, 0), tape_number(t, 0));
 	bool held = s->choice == CHOICE_BY_HOLD;
-	const struct divided *d = &r->x->expression[s->expression];
+	const struct series_switching *d = &r->x->function[s->switching];
 	if (r->names.by_numbers) {
 		tape_ref at = tape_constant(t, d->at[s->breakpoint]);
 		return tape_compare(t, held ? CMP_EQ : CMP_GT, recurrence(r, d->sequence, 0), at);
 	}
-	return held ? tape_operand(t, TAPE_HELD, s->expression, breakpoint_rank(r->x, s->expression, s->breakpoint) + 1)
-		    : tape_operand(t, TAPE_ABOVE, s->expression, upper_rank(r->x, s->expression, s->breakpoint));
+	return held ? tape_operand(t, TAPE_HELD, s->switching, breakpoint_rank(r->x, s->switching, s->breakpoint) + 1)
+		    : tape_operand(t, TAPE_ABOVE, s->switching, upper_rank(r->x, s->switching, s->breakpoint));
 }
 
 static tape_ref choice(struct recurrences *r, const struct sequence *s, int k)

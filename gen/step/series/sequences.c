@@ -12,16 +12,16 @@ int new_sequence(struct sequencing *w, struct sequence sequence)
 
 /* ---- sums ---- */
 
-static void add_wave(const struct sequencing *w, struct sum *sum, const struct basis *basis, mpq_srcptr factor)
+static void add_forcing(const struct sequencing *w, struct sum *sum, const struct basis *basis, mpq_srcptr factor)
 {
 	int l = 0;
-	if (is_polynomial(basis->wave)) {
+	if (is_polynomial(basis->forcing)) {
 		sum_add(sum, TERM_TIME, basis->power, 0, factor);
 		return;
 	}
-	while (w->system->load[l].wave != basis->wave)
+	while (w->system->load[l].forcing != basis->forcing)
 		l++;
-	int column = oscillates(basis->wave) ? 2 * basis->power + basis->sine : basis->power;
+	int column = oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power;
 	sum_add(sum, TERM_LOAD, column_of_load(w->system, l) + column, 0, factor);
 }
 
@@ -47,8 +47,8 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 		case BASIS_ONE:
 			sum_add(sum, TERM_TIME, 0, 0, factor);
 			break;
-		case BASIS_WAVE:
-			add_wave(w, sum, basis, factor);
+		case BASIS_FORCING:
+			add_forcing(w, sum, basis, factor);
 			break;
 		case BASIS_INPUT:
 			sum_add(sum, basis->order ? TERM_SLOPE : TERM_INPUT, basis->index, 0, factor);
@@ -355,20 +355,20 @@ static _Noreturn void no_series(const struct sequencing *w, const struct atom *a
 	      text_between(atom->node->start, atom->node->end), why);
 }
 
-/* ---- what has a formula in each interval, of time or of an expression of the state ---- */
+/* ---- what has a formula in each interval, of time or of a switching function of the state ---- */
 
 /* `above` where a - b > 0, else `below` */
 static int choice_by_state(struct sequencing *w, const struct form *a, const struct form *b, int above, int below)
 {
 	struct division d = divide_forms(w, a, b);
-	if (d.expression == NONE)
+	if (d.function == NONE)
 		return d.above ? above : below;
-	if (w->x->expression[d.expression].sequence == NONE) {
-		int made = sequence_of_form(w, w->x->expression[d.expression].form);
-		w->x->expression[d.expression].sequence = made;
+	if (w->x->function[d.function].sequence == NONE) {
+		int made = sequence_of_form(w, w->x->function[d.function].form);
+		w->x->function[d.function].sequence = made;
 	}
 	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE,
-						  .expression = d.expression, .breakpoint = d.breakpoint,
+						  .switching = d.function, .breakpoint = d.breakpoint,
 						  .a = d.above ? above : below, .b = d.above ? below : above });
 }
 
@@ -576,7 +576,7 @@ struct sum slope_of_state(struct sequencing *w, int state)
 			mpq_srcptr factor = row[layout->load[l] + j];
 			if (mpq_sgn(factor) == 0 || loads_change(w->system))
 				continue;
-			bool power = is_polynomial(w->system->load[l].wave);
+			bool power = is_polynomial(w->system->load[l].forcing);
 			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
 		}
 	for (int e = 0; e < w->system->force_columns; e++)

@@ -27,9 +27,9 @@ enum sequence_kind {
 	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
 	SEQUENCE_CHOICE             /* a where the condition holds, else b */
 };
-/* By which a choice is made: two forms linear in t that are compared, an expression of the state above a breakpoint,
- * or another sequence that is not 0 and changes with such choices alone */
-/* or whether an expression is held between two breakpoints, this and its twin */
+/* By which a choice is made: two forms linear in t that are compared, a switching function of the state above a
+ * breakpoint, or another sequence that is not 0 and changes with such choices alone */
+/* or whether a switching function is held between two breakpoints, this and its twin */
 enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_HOLD, CHOICE_BY_SEQUENCE };
 struct sequence {
 	enum sequence_kind kind;
@@ -40,7 +40,8 @@ struct sequence {
 	enum choice_kind choice;
 	const struct form *left, *right; /* what the condition compares, linear in t */
 	enum comparison comparison;
-	int expression, breakpoint; /* or which it is above; of the expression's, in order of their first appearance */
+	/* or which it is above; of the switching function's, in order of their first appearance */
+	int switching, breakpoint;
 	int test;                   /* or the sequence */
 	int terms;
 	struct sequence_term *term;

@@ -129,14 +129,14 @@ static void add_unresolved(struct finding *f, const struct form *form, enum unre
 /* Powers so high that terms of the first orders are nothing where their base is small */
 static void find_in_product(struct finding *f, const struct atom *atom)
 {
-	enum { OF_WAVES = 4, HIGH = 8 };
+	enum { OF_FORCINGS = 4, HIGH = 8 };
 	for (int i = 0; i < atom->operands; i++) {
 		const struct form *base = atom->operand[i];
 		const struct atom *of = base->terms == 1 ? base->term[0].basis.atom : NULL;
-		bool wave = of && of->kind == ATOM_CALL && (of->function == FN_SIN || of->function == FN_COS);
-		if (wave && atom->exponent[i] >= OF_WAVES)
+		bool forcing = of && of->kind == ATOM_CALL && (of->function == FN_SIN || of->function == FN_COS);
+		if (forcing && atom->exponent[i] >= OF_FORCINGS)
 			add_unresolved(f, of->operand[0], UNRESOLVED_TEETH, (int)atom->exponent[i]);
-		f->looks = f->looks || (!wave && atom->exponent[i] >= HIGH);
+		f->looks = f->looks || (!forcing && atom->exponent[i] >= HIGH);
 	}
 }
 
@@ -181,14 +181,14 @@ double crowded_frequency(const struct linear *system)
 {
 	enum { MANY = 3 };
 	double highest = 0, growth = 0;
-	int waves = 0;
+	int forcings = 0;
 	for (int l = 0; l < system->loads; l++) {
-		const struct wave *wave = system->load[l].wave;
-		growth = fmax(growth, wave ? mpq_get_d(wave->a) : 0);
-		if (oscillates(wave)) {
-			highest = fmax(highest, mpq_get_d(wave->w));
-			waves++;
+		const struct forcing *forcing = system->load[l].forcing;
+		growth = fmax(growth, forcing ? mpq_get_d(forcing->a) : 0);
+		if (oscillates(forcing)) {
+			highest = fmax(highest, mpq_get_d(forcing->w));
+			forcings++;
 		}
 	}
-	return fmax(growth, waves >= MANY ? highest : 0);
+	return fmax(growth, forcings >= MANY ? highest : 0);
 }

@@ -46,7 +46,7 @@ struct tuned_blocks {
 	int first_output;           /* row there of the first output that does; the others follow */
 	int *frequency;             /* per load: its row there, or -1 */
 	int work, more;             /* numbers of two words: for NAME_retune, beside those rows; for NAME_at */
-	bool whole;                 /* params touch every block: any h will do */
+	bool full;                  /* params touch every block: any h will do */
 	int kilobytes;              /* of stack */
 };
 int width_of_equations(const struct tuned_equations *all);        /* columns, W's among them */

@@ -196,7 +196,7 @@ int width_of_equations(const struct tuned_equations *all)
 static int *take_x(struct tuned_block *b, const struct step *step)
 {
 	const struct group *g = b->group;
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	int *place = nowhere(step->layout.size);
 	b->from = ARRAY(int, (size_t)(g->states + g->loads + g->inputs));
 	for (int i = 0; i < g->states; i++)
@@ -245,12 +245,12 @@ static struct tuned_block block_of(const struct step *step, const struct group *
 	const struct linear *system = &step->branch->system;
 	struct tuned_block b = { .group = group, .index = index, .block = block };
 	int *parent = components(step), *place = take_x(&b, step);
-	const bool whole = !step->program->loops;
-	if (!whole)
+	const bool full = !step->program->loops;
+	if (!full)
 		add_component(&b.part, step, parent,
 			      root_of_node(parent, system->n + system->coord[group->state[block]]));
-	b.derivatives = whole ? system->n : b.part.all.rows;
-	for (int row = 0; whole && row < system->n + step->model->params.tuning->outputs; row++)
+	b.derivatives = full ? system->n : b.part.all.rows;
+	for (int row = 0; full && row < system->n + step->model->params.tuning->outputs; row++)
 		add_row(&b.part, row, row);
 	b.place = ARRAY(int, (size_t)b.derivatives);
 	for (int i = 0; i < b.derivatives; i++) {
@@ -343,9 +343,9 @@ static int numbers_of(const struct step *step, const struct group *g)
 	return g->tuned ? g->blocks * g->states * columns : 0;
 }
 
-static struct group *group_of_whole(const struct step *step)
+static struct group *group_of_full(const struct step *step)
 {
-	const struct table *table = step->branch->whole;
+	const struct table *table = step->branch->full;
 	struct group *g = NEW(struct group);
 	*g = (struct group){ GROUP_ROWS, table->states, 1, numbers_up_to(table->states), table->columns,
 			     numbers_up_to(table->columns), table->inputs, numbers_up_to(table->inputs), true };
@@ -358,13 +358,13 @@ void plan_tuned_blocks(struct step *step)
 	const struct program *program = step->program;
 	struct tuned_blocks *p = NEW(struct tuned_blocks);
 	struct fixed_slope *fixed;
-	const int count = fixed_slopes(step, &fixed), real = step->model->asked.single ? 4 : 8;
-	const struct group *group = program->loops ? program->group : group_of_whole(step);
+	const int count = fixed_slopes(step, &fixed), real = step->model->request.single ? 4 : 8;
+	const struct group *group = program->loops ? program->group : group_of_full(step);
 	int numbers = 0, most = 0, stack;
-	p->whole = true;
+	p->full = true;
 	p->solved = !program->loops;
 	for (int k = 0; k < (p->solved ? 1 : program->groups); k++) {
-		p->whole = p->whole && group[k].tuned;
+		p->full = p->full && group[k].tuned;
 		numbers += numbers_of(step, &group[k]);
 		p->touched += group[k].tuned ? group[k].blocks : 0;
 		for (int b = 0; b < group[k].blocks; b++) {

@@ -49,7 +49,7 @@ static bool reaches(const bool *row, int hold)
 
 void mark_tuned_zeros(struct step *step)
 {
-	struct table *table = step->branch->whole;
+	struct table *table = step->branch->full;
 	const struct linear *system = &step->branch->system;
 	int n = table->states, size = step->layout.size;
 	const bool *reached = reached_elsewhere(step, -1);
