@@ -2,6 +2,7 @@
 /* What describes an FMU (FMI 2.0.5, section 2.2; FMI 3.0.2, sections 2.4 and 2.5), valid against the standard's
  * schemas. */
 #include "fmu/fmu.h"
+#include "model/model.h"
 #include "model/request.h"
 
 #include <stdlib.h>
@@ -73,14 +74,17 @@ static void print_variable(FILE *to, const struct fmu *f, int reference)
 	const char *start = starts ? format(" start=\"%s\"", shortest(v->start)) : "";
 	const char *range = v->range ? format(" min=\"%s\" max=\"%s\"", shortest(round_rational(v->range->low)),
 					      shortest(round_rational(v->range->high))) : "";
+	const char *unit = v->unit ? format(" unit=\"%s\"", attribute_text(v->unit->text)) : "";
+	if (v->shown)
+		unit = format("%s displayUnit=\"%s\"", unit, attribute_text(v->shown->text));
 	const char *description = v->description ? format(" description=\"%s\"", attribute_text(v->description)) : "";
 	const char *common = format("name=\"%s\" valueReference=\"%d\" causality=\"%s\" variability=\"%s\"%s%s",
 				    attribute_text(v->name), reference, w.causality, w.variability, initial,
 				    description);
 	if (f->version == 3)
-		fprintf(to, "    <Float64 %s%s%s/>\n", common, range, start);
+		fprintf(to, "    <Float64 %s%s%s%s/>\n", common, unit, range, start);
 	else
-		fprintf(to, "    <ScalarVariable %s>\n      <Real%s%s/>\n    </ScalarVariable>\n", common, range,
+		fprintf(to, "    <ScalarVariable %s>\n      <Real%s%s%s/>\n    </ScalarVariable>\n", common, unit, range,
 			start);
 }
 
@@ -125,6 +129,63 @@ static void print_structure(FILE *to, const struct fmu *f)
 	fputs("  </ModelStructure>\n", to);
 }
 
+/* ---- units: by the base units of SI, and others in which a value may be shown ---- */
+
+/* Exponents that are no whole numbers have no place in a description: then the name alone stands there. */
+static void print_base_unit(FILE *to, const struct unit *unit)
+{
+	static const char *const name[] = { "m", "kg", "s", "A", "K", "mol", "cd" };
+	const char *text = "";
+	for (int i = 0; i < UNIT_BASES; i++) {
+		if (mpz_cmp_ui(mpq_denref(unit->base[i]), 1) != 0)
+			return;
+		if (mpq_sgn(unit->base[i]) != 0)
+			text = format("%s %s=\"%s\"", text, name[i], exact_text(unit->base[i]));
+	}
+	if (unit->angle)
+		text = format("%s rad=\"%d\"", text, unit->angle);
+	if (!is_coherent(unit))
+		text = format("%s factor=\"%s\"", text, shortest(unit_factor(unit)));
+	fprintf(to, "      <BaseUnit%s/>\n", text);
+}
+
+static bool is_first_shown(const struct fmu *f, int index)
+{
+	const struct fmu_variable *v = f->variables.variable;
+	for (int i = 0; i < index; i++)
+		if (v[i].shown && strcmp(v[i].shown->text, v[index].shown->text) == 0 &&
+		    strcmp(v[i].unit->text, v[index].unit->text) == 0)
+			return false;
+	return true;
+}
+
+static void print_unit(FILE *to, const struct fmu *f, int index)
+{
+	const struct fmu_variable *v = f->variables.variable;
+	for (int i = 0; i < index; i++)
+		if (v[i].unit && strcmp(v[i].unit->text, v[index].unit->text) == 0)
+			return;
+	fprintf(to, "    <Unit name=\"%s\">\n", attribute_text(v[index].unit->text));
+	print_base_unit(to, v[index].unit);
+	for (int i = index; i < f->variables.count; i++)
+		if (v[i].shown && strcmp(v[i].unit->text, v[index].unit->text) == 0 && is_first_shown(f, i))
+			fprintf(to, "      <DisplayUnit name=\"%s\" factor=\"%s\"/>\n", attribute_text(v[i].shown->text),
+				shortest(1 / unit_factor(v[i].shown)));
+	fputs("    </Unit>\n", to);
+}
+
+static void print_units(FILE *to, const struct fmu *f)
+{
+	bool any = false;
+	for (int i = 0; i < f->variables.count; i++)
+		if (f->variables.variable[i].unit) {
+			fputs(any ? "" : "  <UnitDefinitions>\n", to);
+			any = true;
+			print_unit(to, f, i);
+		}
+	fputs(any ? "  </UnitDefinitions>\n" : "", to);
+}
+
 static void print_logging(FILE *to)
 {
 	fputs("  <LogCategories>\n"
@@ -166,6 +227,7 @@ const char *model_description(const struct fmu *f)
 	struct text t = { 0 };
 	open_text(&t);
 	(f->version == 3 ? print_head_3 : print_head_2)(t.to, f);
+	print_units(t.to, f);
 	print_logging(t.to);
 	fprintf(t.to, "  <DefaultExperiment startTime=\"0\" stepSize=\"%s\"/>\n", shortest(f->h));
 	print_variables(t.to, f);

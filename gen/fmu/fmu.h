@@ -32,6 +32,7 @@ struct fmu_variable {               /* its place in the list is its value refere
 	double start;               /* of inputs, params, states and constants */
 	const char *description;    /* the comment of the line that declares it; NULL: none */
 	const struct param_range *range; /* of a param that has one; else NULL */
+	const struct unit *unit, *shown; /* of its value, and in which it is shown; NULL: none is known, or as it is */
 };
 struct fmu_variables {
 	int count, constants;       /* constants: of these, the last ones */

@@ -37,6 +37,29 @@ static const char *description_of(const struct spec *spec, const char *name)
 	return text;
 }
 
+/* Inputs and outputs are in their units, all else is in SI units and may be shown in others. */
+static void set_unit(struct fmu_variable *v, const struct unit *unit)
+{
+	const bool kept = v->kind == FMU_INPUT || v->kind == FMU_OUTPUT;
+	v->unit = !unit || kept ? unit : unit_in_si(unit);
+	v->shown = !unit || kept || is_coherent(unit) ? NULL : unit;
+}
+
+static const struct symbol *symbol_named(const struct spec *spec, const char *name, enum symbol_kind kind)
+{
+	const struct symbol *s = spec->first;
+	while (s && (s->kind != kind || strcmp(s->name, name) != 0))
+		s = s->next;
+	return s;
+}
+
+/* The unit of a state, as its coordinate is written */
+static const struct unit *unit_of_shown_state(const struct model *shown, int state)
+{
+	const struct symbol *coord = shown->frame.coord[shown->system.coord[state]];
+	return unit_of_state(shown, state) ? unit_of_derivative(coord->unit, state >= shown->n) : NULL;
+}
+
 /* As it is; `otherwise` where that is another's, with _ as often as it takes */
 static void add(struct fmu_variables *v, enum fmu_kind kind, const char *name, const char *otherwise, double start)
 {
@@ -55,6 +78,7 @@ static void add_constants(struct fmu_variables *v, const struct spec *spec)
 			continue;
 		param_value(s, value);
 		add(v, FMU_CONSTANT, s->name, format("param.%s", s->name), round_rational(value));
+		set_unit(&v->variable[v->count - 1], s->unit);
 		v->constants++;
 	}
 }
@@ -69,19 +93,29 @@ struct fmu_variables variables_of(const struct step *step)
 			model->spec->count.params;
 	struct fmu_variables v = { 0, 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
-	for (int i = 0; i < model->spec->count.inputs; i++)
+	v.variable[0].unit = model->spec->units ? unit_parse((struct place){ NULL, 1 }, "s", 1) : NULL;
+	for (int i = 0; i < model->spec->count.inputs; i++) {
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
-	for (int i = 0; i < model->outputs; i++)
+		set_unit(&v.variable[v.count - 1],
+			 symbol_named(model->spec, system->input[i].name, SYMBOL_INPUT)->unit);
+	}
+	for (int i = 0; i < model->outputs; i++) {
 		add(&v, FMU_OUTPUT, model->output[i].name, format("output.%s", model->output[i].name), 0);
+		set_unit(&v.variable[v.count - 1], model->output[i].unit);
+	}
 	for (int i = 0; i < params; i++) {
 		add(&v, FMU_PARAM, tuning->param[i].symbol->name, format("param.%s", tuning->param[i].symbol->name),
 		    round_rational(tuning->nominal[i]));
 		v.variable[v.count - 1].range = model->params.range[i];
+		set_unit(&v.variable[v.count - 1], tuning->param[i].symbol->unit);
 	}
 	/* most outputs are named like the state that they are */
-	for (int i = 0; i < system->states; i++)
+	for (int i = 0; i < system->states; i++) {
 		add(&v, FMU_STATE, format("state.%s", shown->names.state[i]), format("state.%s", shown->names.state[i]),
 		    round_rational(shown->initial[i]));
+		if (!shown->truncated)
+			set_unit(&v.variable[v.count - 1], unit_of_shown_state(shown, i));
+	}
 	add_constants(&v, model->spec);
 	for (int i = 0; i < v.count; i++) {
 		const size_t before = v.variable[i].kind == FMU_STATE ? strlen("state.") : 0;

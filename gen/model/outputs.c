@@ -148,7 +148,7 @@ const struct unit *unit_of_state(const struct model *model, int state)
 	const struct symbol *coord = model->frame.coord[model->system.coord[state]];
 	if (model->relative || !coord->unit)
 		return NULL;
-	return unit_of_dimension((const mpq_t *)unit_of_derivative(coord->unit, state >= model->n)->base);
+	return unit_in_si(unit_of_derivative(coord->unit, state >= model->n));
 }
 
 /* q, q' as q[1], q[1]'; another vector v as v[1] */

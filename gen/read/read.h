@@ -43,6 +43,7 @@ struct unit {
 	mpq_t *base;                /* exponents, UNIT_BASES */
 	mpq_t factor;               /* one of it is factor pi^pi of the coherent SI unit */
 	int pi;
+	int angle;                  /* exponent of the radian, which no check looks at */
 };
 struct unit *unit_parse(struct place at, const char *text, size_t length); /* `at`: of its first character */
 bool is_unit_name(const char *name, size_t length);         /* with its prefix */
@@ -50,6 +51,7 @@ double unit_factor(const struct unit *unit);                /* to the SI unit, f
 bool is_coherent(const struct unit *unit);                  /* its factor is 1 */
 struct unit *unit_of_derivative(const struct unit *of, int primes);
 struct unit *unit_of_dimension(const mpq_t *base);          /* the coherent one, with its text */
+const struct unit *unit_in_si(const struct unit *of);       /* of one that is written, with its text */
 const char *base_unit_text(const mpq_t *base);              /* kg m/s^2 */
 const char *si_unit_text(const mpq_t *base);                /* N; where it has no such name, as above */
 

@@ -6,7 +6,7 @@
 
 /* ---- what is known ---- */
 
-/* `factor`: a decimal, to the coherent SI unit of `base`; `pi`: the power of pi that goes with it */
+/* `factor`: a decimal, to the coherent SI unit of `base`; `pi`: the power of pi that goes with it, an angle */
 static const struct known_unit {
 	const char *name, *factor, *divisor;
 	int pi;
@@ -96,6 +96,7 @@ static struct unit *unit_of_row(const struct known_unit *row)
 	decimal(row->divisor, divisor);
 	mpq_div(unit->factor, unit->factor, divisor);
 	unit->pi = row->pi;
+	unit->angle = row->pi > 0 || strcmp(row->name, "rad") == 0;
 	for (int i = 0; i < UNIT_BASES; i++)
 		mpq_set_si(unit->base[i], row->base[i], 1);
 	return unit;
@@ -222,6 +223,7 @@ static void multiply_by(struct unit *unit, const struct unit *by, mpq_srcptr pow
 	for (long i = 0; whole && i < (n < 0 ? -n : n); i++)
 		(n < 0 ? mpq_div : mpq_mul)(unit->factor, unit->factor, by->factor);
 	unit->pi += whole ? (int)n * by->pi : 0;
+	unit->angle += whole ? (int)n * by->angle : 0;
 }
 
 static bool take_sign(struct unit_text *u, char sign)
@@ -466,6 +468,19 @@ const char *si_unit_text(const mpq_t *base)
 			return name[i];
 	}
 	return base_unit_text(base);
+}
+
+/* Of deg the radian, of kN the newton */
+const struct unit *unit_in_si(const struct unit *of)
+{
+	if (is_coherent(of))
+		return of;
+	struct unit *unit = unit_of_dimension((const mpq_t *)of->base);
+	if (of->angle == 1 && unit->text[0] == '1') {
+		unit->text = format("rad%s", unit->text + 1);
+		unit->angle = 1;
+	}
+	return unit;
 }
 
 struct unit *unit_of_dimension(const mpq_t *base)

@@ -10,6 +10,7 @@
 #include <mex.h>
 #include <dlfcn.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_MODELS = 4096 };
@@ -17,6 +18,7 @@ enum { MOST_MODELS = 4096 };
 static struct loaded {
     const pl_model *model; /* where `single`, a pl_modelf */
     int single;
+    const pl_units *units;  /* NULL: there are none */
 } table[MOST_MODELS];
 static int models;
 
@@ -71,6 +73,12 @@ static int takes_steps(const struct loaded *m)
     return status == 0;
 }
 
+/* One of the own unit of a tunable param in SI units */
+static double factor_of(const struct loaded *m, int param)
+{
+    return m->units != NULL && m->units->param_factor != NULL ? strtod(m->units->param_factor[param], NULL) : 1.0;
+}
+
 static mxArray *description(const struct loaded *m, int id)
 {
     mxArray *reported = mxCreateStructMatrix(1, 1, 0, NULL), *list;
@@ -85,7 +93,8 @@ static mxArray *description(const struct loaded *m, int id)
     field(reported, "tunable", names_of(OF(m, param_names), params));
     list = mxCreateDoubleMatrix(1, (mwSize)params, mxREAL);
     for (i = 0; i < params; i++)
-        mxGetPr(list)[i] = m->single ? (double)FLOATS(m)->param_values[i] : m->model->param_values[i];
+        mxGetPr(list)[i] = (m->single ? (double)FLOATS(m)->param_values[i] : m->model->param_values[i]) /
+                           factor_of(m, i);
     field(reported, "values", list);
     list = mxCreateDoubleMatrix(1, (mwSize)inputs, mxREAL);
     for (i = 0; i < inputs; i++)
@@ -93,6 +102,13 @@ static mxArray *description(const struct loaded *m, int id)
     field(reported, "ahead", list);
     field(reported, "can_retune", mxCreateDoubleScalar(takes_steps(m)));
     return reported;
+}
+
+/* NAME_units beside NAME_model; NULL: there are none */
+static const pl_units *units_of(void *object, const mxArray *symbol)
+{
+    char *name = text_of(symbol), *last = strrchr(name, '_');
+    return last == NULL ? NULL : (const pl_units *)dlsym(object, strcpy(last, "_units") - (last - name));
 }
 
 static mxArray *open_model(const mxArray *file, const mxArray *symbol)
@@ -112,6 +128,7 @@ static mxArray *open_model(const mxArray *file, const mxArray *symbol)
         refuse("too many models: `clear plgen_mex` forgets them");
     table[id].model = (const pl_model *)descriptor;
     table[id].single = head[1] == (int)sizeof(float);
+    table[id].units = units_of(object, symbol);
     if (id == models)
         models++;
     return description(&table[id], id);
@@ -249,7 +266,15 @@ static mxArray *inside(const struct loaded *m, const void *s, double tau, const 
 
 static int retune(const struct loaded *m, void *s, const mxArray *params, double h)
 {
-    const void *values = numbers(m, params, (size_t)OF(m, params));
+    const int count = OF(m, params);
+    void *values = numbers(m, params, (size_t)count);
+    int i;
+    for (i = 0; i < count; i++) {
+        if (m->single)
+            ((float *)values)[i] = (float)((double)((float *)values)[i] * factor_of(m, i));
+        else
+            ((double *)values)[i] *= factor_of(m, i);
+    }
     return m->single ? FLOATS(m)->retune(s, (const float *)values, (float)h)
                      : m->model->retune(s, (const double *)values, h);
 }

@@ -231,6 +231,17 @@ refuses('to read a param that is not there', '"no tunable or given param is call
         lambda: Model('held.spec').params['kk'], KeyError)
 refuses('the Phi of a stop', 'stop: not linear, so it has no Phi: it would leave out max(x, 0)',
         lambda: model('stop').Phi)
+# k is 18000 N/m either way; the stiffness of plgen's own account says what a number given for it means
+for tuned in ('', 'tunable k\n'):
+    with open('measured.spec', 'w') as text:
+        text.write('model measured\nparam m = 400 "kg", k = 18 "kN/m"\n' + tuned +
+                   'coord z "mm"\ninput u "N"\nm*z\'\' + k*z = u\noutput z, f = k*z "kN"\nstep 1 "ms"\n')
+    m = Model('measured.spec', k=36)
+    case('units of a model' + (', tuned' if tuned else ''),
+         m.units['f'] == 'kN' and m.units['z'] == 'mm' and m.units.states == {'z': 'm', "z'": 'm/s'} and
+         m.units.inputs == {'u': 'N'} and m.explain['K'] == [[36000]] and m.params['k'] == 36,
+         (m.units, m.params, m.explain['K']))
+case('a model without units has none', set(model('held').units.values()) == {None}, model('held').units)
 os.environ['CC'] = 'no-such-compiler'
 refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
         lambda: model('sdcsf'))

@@ -54,14 +54,14 @@ class RunError(Error):
 
 
 class Params(Mapping):
-    """Tunable params, and those that were given: m.params["k"], m.params["k"] = 70."""
+    """Tunable params, and those that were given, in their own units: m.params["k"], m.params["k"] = 70."""
 
     def __init__(self, model: Model) -> None:
         self._model = model
 
     def _all(self) -> dict[str, Any]:
         m = self._model
-        return {**m._given, **{name: float(x) for name, x in zip(m._code.tunable, m._tuned)}}
+        return {**m._given, **{name: float(x) for name, x in zip(m._code.tunable, m._tuned / m._code.factors)}}
 
     def __getitem__(self, name: str) -> Any:
         every = self._all()
@@ -192,6 +192,7 @@ class Model(Linear):
     h = property(lambda self: self._h, doc='the step [s]')
     notes = property(lambda self: self._code.notes)
     params = property(Params)
+    units = property(lambda self: self._code.units)
     ss = property(StateSpaces, doc='A, B, C, D over the inputs, discrete: those of a step; ss(at=...) at another point')
 
     @property
@@ -458,7 +459,8 @@ class Model(Linear):
     def _tune(self, params: Mapping[str, Value], step: Value | None) -> None:
         values = self._tuned.copy()
         for name, value in params.items():
-            values[self._code.tunable.index(name)] = value
+            place = self._code.tunable.index(name)
+            values[place] = value * self._code.factors[place]
         h = self._h if step is None else float(self.dtype.type(step))
         if params or h != self._h:
             self._retune(values, h)
@@ -476,7 +478,8 @@ class Model(Linear):
         self._told = {}
 
     def _nominal(self, name: str) -> float:
-        return float(self._code.values[self._code.tunable.index(name)])
+        place = self._code.tunable.index(name)
+        return float(self._code.values[place] / self._code.factors[place])
 
     def _changed(self) -> dict[str, Value]:
         return {n: v for n, v in self.params.items() if n in self._given or v != self._nominal(n)}
@@ -546,7 +549,7 @@ class Model(Linear):
         params = np.tile(self._tuned, (len(table), 1))
         for j, given in enumerate(table):
             for name, x in given.items():
-                params[j, c.tunable.index(name)] = x
+                params[j, c.tunable.index(name)] = x * c.factors[c.tunable.index(name)]
         first = None if record is None else record[:1]
         rows = np.empty((len(table), n + 1, len(self.outputs)), dtype=self.dtype)
         if c.most > 1 or not all(pool.map(lambda j: self._some(params[j:j + LANES], n, steps, first,

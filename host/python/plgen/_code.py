@@ -12,7 +12,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -240,6 +240,28 @@ def _descriptor(real: type) -> type[ctypes.Structure]:
 _DESCRIPTOR = {False: _descriptor(ctypes.c_double), True: _descriptor(ctypes.c_float)}
 
 
+class Units(Mapping):
+    """Units as texts, None where one is not known, by name: m.units["f"]; outputs before inputs, params and states,
+    whose own are m.units.outputs, .inputs, .params and .states. States are in SI units, all others as it is written."""
+
+    def __init__(self, states: dict[str, str | None], inputs: dict[str, str | None], outputs: dict[str, str | None],
+                 params: dict[str, str | None]) -> None:
+        self.states, self.inputs, self.outputs, self.params = states, inputs, outputs, params
+        self._all = {**states, **params, **inputs, **outputs}
+
+    def __getitem__(self, name: str) -> str | None:
+        return self._all[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all)
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+    def __repr__(self) -> str:
+        return repr(self._all)
+
+
 class Code:
     """What plgen wrote for these params: shared by all instances."""
 
@@ -283,9 +305,23 @@ class Code:
         self.inputs = tuple(m.input_names[i].decode() for i in range(m.inputs))
         self.outputs = tuple(m.output_names[i].decode() for i in range(m.outputs))
         self.values = np.array([m.param_values[i] for i in range(m.params)], dtype=self.dtype)
+        self._read_units(m)
         self.ahead = [m.start_samples[i] for i in range(m.inputs)]
         self.most = max(self.ahead, default=0)
         return self
+
+    def _read_units(self, m: Any) -> None:
+        """NAME_units, which a model without units has not. factors: of the own units of params in SI units"""
+        names, count = ctypes.POINTER(ctypes.c_char_p), (m.states, m.inputs, m.outputs, m.params, m.params)
+        try:
+            entries = list((names * len(count)).in_dll(self.library, self.name + '_units'))
+        except ValueError:
+            entries = []
+        texts = [[t[i].decode() for i in range(n)] if t else [''] * n
+                 for t, n in zip(entries or [None] * len(count), count)]
+        of = (self.states, self.inputs, self.outputs, self.tunable)
+        self.units = Units(*(dict(zip(n, (u or None for u in t))) for n, t in zip(of, texts)))
+        self.factors = np.array([float(f or 1) for f in texts[4]])
 
     def lanes(self, compiler: Compiler, text: str) -> Any:
         """A function over instances side by side; text: of plgen --batch, which has the lanes."""
