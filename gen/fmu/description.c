@@ -84,8 +84,8 @@ static void print_variable(FILE *to, const struct fmu *f, int reference)
 	if (f->version == 3)
 		fprintf(to, "    <Float64 %s%s%s%s/>\n", common, unit, range, start);
 	else
-		fprintf(to, "    <ScalarVariable %s>\n      <Real%s%s%s/>\n    </ScalarVariable>\n", common, unit, range,
-			start);
+		fprintf(to, "    <ScalarVariable %s>\n      <Real%s%s%s/>\n    </ScalarVariable>\n", common, unit,
+			range, start);
 }
 
 static void print_variables(FILE *to, const struct fmu *f)
@@ -169,8 +169,8 @@ static void print_unit(FILE *to, const struct fmu *f, int index)
 	print_base_unit(to, v[index].unit);
 	for (int i = index; i < f->variables.count; i++)
 		if (v[i].shown && strcmp(v[i].unit->text, v[index].unit->text) == 0 && is_first_shown(f, i))
-			fprintf(to, "      <DisplayUnit name=\"%s\" factor=\"%s\"/>\n", attribute_text(v[i].shown->text),
-				shortest(1 / unit_factor(v[i].shown)));
+			fprintf(to, "      <DisplayUnit name=\"%s\" factor=\"%s\"/>\n",
+				attribute_text(v[i].shown->text), shortest(1 / unit_factor(v[i].shown)));
 	fputs("    </Unit>\n", to);
 }
 

@@ -241,7 +241,7 @@ for tuned in ('', 'tunable k\n'):
          m.units['f'] == 'kN' and m.units['z'] == 'mm' and m.units.states == {'z': 'm', "z'": 'm/s'} and
          m.units.inputs == {'u': 'N'} and m.explain['K'] == [[36000]] and m.params['k'] == 36,
          (m.units, m.params, m.explain['K']))
-case('a model without units has none', set(model('held').units.values()) == {None}, model('held').units)
+case('a model without units has none', set(Model('held.spec').units.values()) == {None}, Model('held.spec').units)
 os.environ['CC'] = 'no-such-compiler'
 refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
         lambda: model('sdcsf'))

@@ -159,8 +159,8 @@ same "$("$plrun" --units "$work/two.spec" 0 | tr '\n' ' ')" 't,a.f [kN],b.f [kN]
 	"$plgen" --explain=json bounce.spec) > "$work/json" 2> "$work/said"
 same "$(sed -n 's/.*"units": //p' "$work/json")" \
 	'{"states": ["m", "m/s"], "outputs": ["mm", "kN"], "inputs": []},' '--explain=json'
-same "$(grep -c '^extern const pl_units bounce_units;' "$work/bounce.h" "$work/bouncef.h" | sed 's/.*://' | tr '\n' ' ')" \
-	'1 1 ' 'NAME_units is declared'
+same "$(grep -c '^extern const pl_units bounce_units;' "$work/bounce.h" "$work/bouncef.h" | sed 's/.*://' |
+	tr '\n' ' ')" '1 1 ' 'NAME_units is declared'
 standard=${FMI_DIR:-$(dirname "$plgen")/../../shared/fmi}
 for version in 2 3; do
 	"$plgen" --fmu "$work/tuned$version.fmu" --fmu-version $version "$work/tuned.spec" 2> "$work/said"
