@@ -95,6 +95,10 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 	memcpy(&m->allowed, &allowed, sizeof allowed);
 	memcpy(&m->allowedf, &allowed, sizeof allowed);
 	free(symbol);
+	symbol = format("%s_crossed", name);
+	void *crossed = dlsym(m->object, symbol);
+	memcpy(&m->crossed, &crossed, sizeof crossed);
+	free(symbol);
 	symbol = format("%s_units", name);
 	m->units = dlsym(m->object, symbol);
 	free(symbol);

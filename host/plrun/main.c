@@ -128,7 +128,8 @@ static int run_once(struct start *s)
 	struct job job = { .machine = m, .params = s->params, .h = m->h, .until = o->until, .reported = true };
 	struct watchers w = { NULL, NULL, NULL, NULL };
 	struct stats stats = stats_new(m->outputs);
-	uint64_t every = steps_between(o, m);
+	uint64_t every = steps_between(o, m), crossed = 0;
+	job.crossed = &crossed;
 	job.record = o->input ? record_read(o, m) : NULL;
 	char *error = plan_run(&job);
 	if (error && job.record)                /* its last line is where more was expected */
@@ -152,7 +153,7 @@ static int run_once(struct start *s)
 	if (w.rows)
 		rows_end(w.rows);
 	if (w.stats)
-		stats_print(to, w.stats, m, job.h);
+		stats_print(to, w.stats, m, job.h, crossed);
 	if (w.psd)
 		psd_print(to, w.psd, o);
 	output_done(output, to);

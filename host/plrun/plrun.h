@@ -214,6 +214,7 @@ struct machine {
 	const pl_model *model;                  /* of a model in float its pl_modelf: `single` says which */
 	const pl_modelf *modelf;
 	bool single, has_status, can_retune; /* can_retune: to another step too */
+	uint64_t (*crossed)(const void *s);     /* breakpoints, impacts included; NULL: the model counts none */
 	/* NAME_allowed, of its type; NULL: steps do not look at their error */
 	void (*allowed)(const void *s, double *y);
 	void (*allowedf)(const void *s, float *y);
@@ -330,6 +331,7 @@ struct job {
 	double h, until;                        /* until < 0: to the end of the record */
 	bool resampled, reported;               /* reported: progress is */
 	uint64_t steps;                         /* these two by plan_run */
+	uint64_t *crossed;                      /* NULL, or where the number of breakpoints crossed goes */
 };
 char *plan_run(struct job *job);                        /* NULL, or why not */
 typedef void watch(void *who, uint64_t k, const double *out);  /* after step k, and at k = 0 */
@@ -391,7 +393,8 @@ struct stats {                          /* of a run */
 struct stats stats_new(int outputs);
 void stats_add(void *who, uint64_t k, const double *out);
 double stats_rms(const struct stats *s, int output);
-void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h);
+/* crossed: breakpoints; it counts where the machine counts them */
+void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed);
 
 /* ---- chart.c ---- */
 

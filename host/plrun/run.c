@@ -224,6 +224,8 @@ char *run_steps(const struct job *job, watch *each, void *who)
 		if (job->record && job->steps + (uint64_t)m->most_ahead > 0)
 			begin_samples(&w, s);
 		error = take_steps(job, s, &w, out, each, who);
+		if (job->crossed && m->crossed)
+			*job->crossed = m->crossed(s->state);
 	}
 	free(w.row);
 	free(w.u);

@@ -37,10 +37,10 @@ double stats_rms(const struct stats *s, int output)
 	return (double)sqrtl(s->of[output].squares / (long double)s->rows);
 }
 
-void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h)
+void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed)
 {
 	char when[LONGEST];
-	fputs("output,final,mean,rms,least,largest,peak,t of peak\n", to);
+	fprintf(to, "output,final,mean,rms,least,largest,peak,t of peak%s\n", m->crossed ? ",crossings" : "");
 	for (int i = 0; i < stats->outputs && stats->rows; i++) {
 		const struct output_stats *s = &stats->of[i];
 		const double value[] = { s->last, (double)(s->sum / (long double)stats->rows), stats_rms(stats, i),
@@ -49,6 +49,6 @@ void stats_print(FILE *to, const struct stats *stats, const struct machine *m, d
 		for (size_t k = 0; k < sizeof value / sizeof *value; k++)
 			fprintf(to, ",%s", shortest(value[k], m->single));
 		*put_time(when, s->peak_at, h, m->single) = 0;
-		fprintf(to, ",%s\n", when);
+		fprintf(to, m->crossed ? ",%s,%llu\n" : ",%s\n", when, (unsigned long long)crossed);
 	}
 }

@@ -110,6 +110,15 @@ cat rows.csv stats.csv | awk -F, '
 			off($4, sqrt(sq[i] / n)) || $5 != low[i] || $6 != top[i] || $7 != peak[i] || $8 != at[i] }
 	END { exit bad || n != 2001 || lines != 2 }' >log
 result $? 'statistics of a run are those of its rows'
+run "$models/bouncing_ball.spec" 3 >rows.csv
+run "$models/bouncing_ball.spec" 3 --stats >stats.csv
+# an impact turns the velocity upwards between two rows
+awk -F, 'NR == 1 { for (i = 2; i <= NF; i++) if ($i == "x\047") v = i; next }
+	NR > 2 && last < 0 && $v > 0 { turns++ } { last = $v } END { print turns + 0 }' rows.csv >expected
+{ head -n 1 stats.csv; cat stats.csv expected; } >log
+head -n 1 stats.csv | grep -q ',crossings$' && [ "$(sed -n 2p stats.csv | sed 's/.*,//')" = "$(cat expected)" ] &&
+	[ "$(cat expected)" -gt 2 ]
+result $? 'statistics of a run: impacts'
 
 run car.spec --input road.csv --sweep params.csv --peak --jobs 2 >two.csv
 same one.csv two.csv 'jobs 1 and 2'
