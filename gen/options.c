@@ -180,18 +180,29 @@ static const char *own_folder(void)
 	return path;
 }
 
-/* Ends the program where it is not found. */
-static const char *runtime_folder(void)
+/* What is installed as datadir/plgen/NAME and stands in the source tree at `tree`, seen from this program: the folder
+ * that has `file`, `named` first and `otherwise` last, where they are not NULL; NULL: none */
+static const char *data_folder(const char *name, const char *tree, const char *file, const char *named,
+			       const char *otherwise)
 {
-	const char *own = own_folder(), *named = getenv("PLGEN_RUNTIME");
+	const char *own = own_folder();
 	const char *place[] = { named && *named ? named : NULL,
-				own ? format("%s/%s/plgen/runtime", own, PLGEN_DATA_FROM_BIN) : NULL,
-				own ? format("%s/../runtime", own) : NULL, PLGEN_RUNTIME };
+				own ? format("%s/%s/plgen/%s", own, PLGEN_DATA_FROM_BIN, name) : NULL,
+				own ? format("%s/../%s", own, tree) : NULL, otherwise };
 	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
-		if (place[i] && access(format("%s/plrt.h", place[i]), R_OK) == 0) {
+		if (place[i] && access(format("%s/%s", place[i], file), R_OK) == 0) {
 			char *real = realpath(place[i], NULL);
 			return need_memory(real);
 		}
+	return NULL;
+}
+
+/* Ends the program where it is not found. */
+static const char *runtime_folder(void)
+{
+	const char *folder = data_folder("runtime", "runtime", "plrt.h", getenv("PLGEN_RUNTIME"), PLGEN_RUNTIME);
+	if (folder)
+		return folder;
 	fputs("plgen: error: the runtime, plrt.h, is not there\n"
 	      "note: the environment's PLGEN_RUNTIME names its folder\n", stderr);
 	exit(1);
@@ -557,6 +568,7 @@ static void check_names(const struct options *options)
 void read_options(int argc, char **argv, struct options *options)
 {
 	options->banner = "";
+	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
 	if (options->bundle && options->print != PRINT_C)
 		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));

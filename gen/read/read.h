@@ -332,6 +332,8 @@ struct node *state_node(struct symbol *coord, int component, int primes); /* at 
 
 /* ---- use.c: parts of an assembly, for a reader ---- */
 
+void read_parts_from(const char *folder);                   /* those that come with plgen; NULL: there are none */
+
 /* an equation or element: front: M*x'' = 0 */
 const char *written_text(const struct assembly_part *part, struct place at, struct place end);
 /* axle.spec as front, rear; NULL: it is told with a part before it */

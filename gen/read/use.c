@@ -207,6 +207,29 @@ static void add_part(struct parser *p, struct token name, const struct assembly_
 }
 
 /* use: use STRING as NAME { , NAME } [ with binding { , binding } ] */
+static const char *parts_folder;
+
+void read_parts_from(const char *folder)
+{
+	parts_folder = folder;
+}
+
+static bool is_there(const char *path)
+{
+	FILE *file = fopen(path, "rb");
+	if (file)
+		fclose(file);
+	return file;
+}
+
+/* Beside the text that names it; else, of a name alone, among the parts that come with plgen */
+static const char *path_of_part(const struct source *source, const char *name)
+{
+	const char *path = beside(source, name);
+	const char *shared = parts_folder && !strchr(name, '/') ? format("%s/%s", parts_folder, name) : NULL;
+	return shared && !is_there(path) && is_there(shared) ? shared : path;
+}
+
 static void read_use(struct parser *p)
 {
 	struct assembly_part use = { 0 };
@@ -228,7 +251,7 @@ static void read_use(struct parser *p)
 	if (p->token.kind != TOKEN_END && use.bindings == 0)
 		unexpected(p, "',', 'with' or the end of the statement");
 	expect_end(p);
-	const char *path = beside(file.at.source, use.file);
+	const char *path = path_of_part(file.at.source, use.file);
 	const struct text *text = read_text(path, file.at);
 	add_file(p->spec, path);
 	for (size_t i = 0; i < names; i++)

@@ -12,7 +12,8 @@ root=$(cd "$2" && pwd) || exit 99
 
 : >log
 for file in bin/plgen bin/plrun share/man/man1/plgen.1 share/man/man1/plrun.1 share/plgen/models/sdcsf.spec \
-	share/plgen/runtime/host/plmain.c share/plgen/vscode/package.json share/vim/vimfiles/syntax/plgen.vim \
+	share/plgen/runtime/host/plmain.c share/plgen/parts/road_iso8608.spec \
+	share/plgen/vscode/package.json share/vim/vimfiles/syntax/plgen.vim \
 	share/bash-completion/completions/plgen share/bash-completion/completions/plrun \
 	share/zsh/site-functions/_plgen share/doc/plgen/spec.md share/doc/plgen/contacts.md share/doc/plgen/api.md \
 	share/doc/plgen/install.md share/doc/plgen/LICENSE; do
