@@ -188,14 +188,16 @@ done
     done
 } >"$doc/firmware/retune.csv"
 
-# ---- stack.csv ----
+# ---- stack.csv, of every function: in the build folder, as it is long ----
 
+stack=${MESON_BUILD_ROOT:-$PWD}/tests/firmware/stack.csv
+mkdir -p "${stack%/*}" || exit 99
 {
     echo function,m0_own,m0_deepest,m4f_own,m4f_deepest
     sort -u "$work/stack.m0.double" "$work/stack.m0.float" >"$work/m0"
     sort -u "$work/stack.m4f.double" "$work/stack.m4f.float" >"$work/m4f"
     join "$work/m0" "$work/m4f" | tr ' ' ,
-} >"$doc/firmware/stack.csv"
+} >"$stack"
 
 # ---- the tables of firmware.md: a part of the rows of figures.csv, retune.csv and stack.csv ----
 
@@ -221,7 +223,7 @@ done
                      of(m0, m "_selftest") "|" of(m4f, m "_step") "|" of(m4f, m "_at") "|" \
                      of(m4f, m "_retune") "|" of(m4f, m "_selftest") "|" }
              END { for (i = 1; i <= count; i++) { row(models[i] "_double"); row(models[i] "_float") } }' \
-        "$doc/firmware/stack.csv"
+        "$stack"
 } >"$work/model_stack"
 {
     echo '|type|RAM|\|pole\| h|M0: flash|stack|instr.|M4F: flash|stack|instr.|'
