@@ -137,6 +137,14 @@ else
     tell("the response", isequal(size(r), [4, 2, 2]) && max(max(abs(r(:, :, 1) - direct))) < 1e-9, r(:, :, 1) - direct);
 end
 
+scaled = ["model scaled\nparam m = 2 \"kg\", k = 0.1 \"N/mm\"\ntunable k\ncoord x \"mm\"\nm*x'' + k*x = 0\n", ...
+          "init x = 3 \"mm\"\nstep 0.01\n"];
+m = plgen_model(scaled, "k", 0.25);
+other = plgen_model(scaled, "k", "0.25");
+y = m.run(50);
+tell("params in units of their own", m.params.k == 0.25 && isequal(plgen_model(scaled).params.k, 0.1) && ...
+     max(max(abs(y - other.run(50)))) < 1e-13 * max(max(abs(y))), m.params, y(end, :));
+
 bent = ["model bent\nparam k = 3\ncoord x, y\ninput u\nx'' + 0.2*x' + sin(x) + x*y = u\ny' + k*y = x^2\n", ...
         "init x = 0.5\noutput f = x*y\noutput x\nstep 0.01\nscheme taylor\n"];
 slope = @(x, y) [0, 0, 1; 2 * x, -3, 0; -cos(x) - y, -x, -0.2];

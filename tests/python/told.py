@@ -363,6 +363,37 @@ with open('changed.spec', 'w') as f:
 refuses('a pickled model of a spec that is another now',
         'one: the spec, or plgen, is another than when this was pickled', lambda: pickle.loads(kept))
 
+# ---- units ----
+SCALED = '''model scaled
+param m = 2 "kg", k = 0.1 "N/mm", c = 0.5 "N*s/m"
+tunable k, c
+coord x "mm"
+input u "kN"
+m*x'' + c*x' + k*x = u
+output f = k*x "kN"
+init x = 3 "mm"
+step 10 "ms"
+'''
+PLAIN = '''model scaled
+param m = 2, k = 100, c = 0.5
+tunable k, c
+coord x
+input u
+m*x'' + c*x' + k*x = 1000*u
+output f = k*x/1000
+init x = 0.003
+step 0.01
+'''
+m, plain = Model(SCALED, k=0.25), Model(PLAIN, k=250)
+case('params in units of their own', m.params['k'] == 0.25, m.params)
+y, other, written = m.run(record[:90, 0]), plain.run(record[:90, 0]), Model(SCALED, k='0.25').run(record[:90, 0])
+off = np.abs(y - other).max(), np.abs(y - written).max()
+case('... and a run as of the same in SI units', max(off) < 1e-13 * np.abs(other).max(), off)
+rows = Model(SCALED).batch(record[:90, 0], {'k': [0.1, 0.25]})
+case('... and a batch', same(rows[1].copy(), y), np.abs(rows[1] - y).max())
+m.params['m'] = 3
+case('... and when another param is compiled', m.params['k'] == 0.25 and np.allclose(m.explain['K'], 250), m.params)
+
 # ---- matrices ----
 CHAIN = """model chain
 matrix M = "M.mtx", K = "K.mtx", f = "f.mtx"
@@ -426,6 +457,7 @@ with warnings.catch_warnings(record=True) as told:
          [str(w.message) for w in told])
 at_rest = m.linearise()
 direct = at_rest.C @ np.linalg.solve(2j * np.eye(3) - at_rest.A, at_rest.B)
+case('its stability', at_rest.stability == 'stable' and np.real(at_rest.poles).max() < 0, at_rest.stability)
 case('its response at 2 rad/s', np.abs(m.frf(2.0, at='rest') - direct).max() < 1e-14 and at_rest.at ==
      'linearised at rest: x = 0, y = 0', at_rest.at)
 print('end')

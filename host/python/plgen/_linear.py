@@ -22,7 +22,8 @@ class StateSpace:
 
     inputs, outputs, states: names. h: None; of the discrete one, whose u is held over a step, the step, and x' is the
     state a step later. discrete: that one, or None. at: where a model that is not linear is linearised, as plgen says
-    it ('linearised at rest: x = 0'; x, u and y are then deviations from there); '' of a linear one. poles: [1/s]."""
+    it ('linearised at rest: x = 0'; x, u and y are then deviations from there); stability: there; '' of a linear one.
+    poles: [1/s]."""
 
     def __init__(self, told: dict[str, Any], column: list[int], states: tuple[str, ...],
                  h: float | None = None) -> None:
@@ -39,7 +40,7 @@ class StateSpace:
         self.inputs: tuple[str, ...] = tuple(told['inputs'][i] for i in column) if 'inputs' in told else ()
         self.outputs: tuple[str, ...] = tuple(told.get('outputs', ()))
         self.discrete: StateSpace | None = None
-        self.at = ''
+        self.at = self.stability = ''
         self.poles = np.empty(0, dtype=complex)
 
     def __iter__(self) -> Iterator[np.ndarray]:
@@ -135,6 +136,7 @@ class Linear:
         space = state_space(told, self.inputs, loads, self.name)
         said = [line.partition(': note: ')[2] for line in notes.split('\n') if ': note: linearised ' in line]
         space.at = said[0] if said else 'linearised at ' + place(at, self)
+        space.stability = told['linearised']['stability']
         if at is None:
             warnings.warn('{}: not linear, and {}'.format(self.name, space.at), stacklevel=3)
         return space
