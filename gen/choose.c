@@ -133,13 +133,13 @@ static struct step *step_of(struct choosing *c, struct model *model, enum step_f
 
 static void try_form(struct choosing *c, enum step_form form)
 {
-	const struct request *asked = c->request;
+	const struct request *request = c->request;
 	for (int precision = 0; precision < 2; precision++) {
 		const bool single = precision == 0;
-		if (asked->real_given && asked->single != single)
+		if (request->real_given && request->single != single)
 			continue;
-		const bool exact = !asked->compensated && try_one(c, single, false, form);
-		if (asked->compensated || !(exact || loses_too_much(c)))
+		const bool exact = !request->compensated && try_one(c, single, false, form);
+		if (request->compensated || !(exact || loses_too_much(c)))
 			try_one(c, single, true, form);         /* which is dearer */
 	}
 }
@@ -154,12 +154,12 @@ static void try_forms(struct choosing *c)
 {
 	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
 	const struct variant *v = c->variant;
-	const bool asked = c->request->form != FORM_AUTO, modes = v->model->truncated;
+	const bool requested = c->request->form != FORM_AUTO, modes = v->model->truncated;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
 		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
 				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated &&
 				       loses_too_much(c));
-		if (asked ? c->request->form == forms[i] : !needless)
+		if (requested ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
 	}
 }
@@ -428,20 +428,20 @@ static double growth_of(const struct step *step)
 /* What stands in the way, as far as something asked for does */
 static const char *what_would_do(struct choosing *c)
 {
-	const struct request *asked = c->request;
-	struct request open = *asked;
+	const struct request *request = c->request;
+	struct request open = *request;
 	const struct step *known = c->variant->states ? c->variant->states : c->variant->modes;
 	const double growth = known ? growth_of(known) : 0;
 	if (growth > 1e-9)
 		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
-	if (!(asked->real_given && asked->single) && asked->form == FORM_AUTO && !asked->compensated)
+	if (!(request->real_given && request->single) && request->form == FORM_AUTO && !request->compensated)
 		return NULL;
 	open.real_given = open.compensated = false;
 	open.form = FORM_AUTO;
 	c->request = &open;
 	try_all(c);
 	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
-	c->request = asked;
+	c->request = request;
 	return best && best->error_ratio <= 1 ? format("without what is asked for on the command line it can: %s",
 						  certified_text(best, worst_requirement(c, best)))
 					 : NULL;

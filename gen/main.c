@@ -134,9 +134,9 @@ static long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end)
 }
 
 /* Of what the C would have none changes the motion, and its states are the written ones. */
-static struct request request_of_motion(const struct request *asked)
+static struct request request_of_motion(const struct request *given)
 {
-	struct request request = *asked;
+	struct request request = *given;
 	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
 	request.fast = request.phasors = false;
 	request.modes = request.linearise = NULL;
@@ -244,11 +244,11 @@ static bool make_again(struct work *w, const char *step)
 static bool choose_sampling(struct work *w)
 {
 	struct request *request = &w->options.request;
-	const struct request asked = *request;
+	const struct request given = *request;
 	if (!find_requirements(w->stepped))
 		return false;
 	for (const char *step = first_step(w->stepped); step; step = shorter_step(w->step)) {
-		*request = asked;
+		*request = given;
 		if (!make_again(w, step))
 			return false;
 		w->step = choose_step(w->model, w->stepped, request);

@@ -180,7 +180,7 @@ static void add_need(struct dimensions *w, const struct need *need)
 	}
 }
 
-static void add_asked(struct dimensions *w)
+static void add_requested(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
 	for (int i = 0; i < spec->initials; i++) {
@@ -464,7 +464,7 @@ static void check_all(void *context)
 		if (!s->broken)
 			add_value(w, s);
 	add_whens(w);
-	add_asked(w);
+	add_requested(w);
 	solve(w);
 	for (int i = 0; i < w->assertions; i++)
 		check_assertion(w, &w->assertion[i]);

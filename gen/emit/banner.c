@@ -66,9 +66,12 @@ static void banner_poles(const struct emitter *e)
 
 #define banner_sentence(e, ...) say_words(e, format(__VA_ARGS__))
 
-#define region_number \
-	"The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of switching function 0, " \
-	"n0 how many intervals that has."
+static const char *region_number(int functions)
+{
+	return functions == 1 ? "The number of a region is that of its interval of switching function 0."
+			      : "The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of "
+				"switching function 0, n0 how many intervals that has.";
+}
 
 /* What the scheme is; nothing of exact */
 static void banner_scheme(const struct emitter *e)
@@ -144,7 +147,7 @@ static void banner_breakpoints(const struct emitter *e, const struct expansion *
 		say(e, " *     switching function %d: %s, at %s\n", i, printable(series_switching_text(e->step, i)),
 		    rising_text(&x->function[i]));
 	if (regions_of_series(x))
-		banner_sentence(e, region_number);
+		banner_sentence(e, "%s", region_number(x->functions));
 }
 
 static void report_no_phi(const struct emitter *e)
@@ -318,7 +321,7 @@ static void banner_switching_functions(const struct emitter *e)
 static void banner_region_number(const struct emitter *e)
 {
 	say(e, " * The poles above are those of the terms that are linear everywhere.\n");
-	banner_sentence(e, region_number);
+	banner_sentence(e, "%s", region_number(e->step->shown->model->switching->functions));
 }
 
 /* Regions, and what each expression is compared with */
@@ -533,12 +536,12 @@ static void banner_state(const struct emitter *e)
 /* What --fast would try: blocks of rows for a linear model, rotated phasors for loads that are not polynomials */
 static void banner_fast(const struct emitter *e)
 {
-	const struct request *asked = &e->model->request;
-	bool rows = !asked->rows && !asked->single && is_linear_alone(e->step) && !e->step->is.tuned &&
+	const struct request *request = &e->model->request;
+	bool rows = !request->rows && !request->single && is_linear_alone(e->step) && !e->step->is.tuned &&
 		    !step_objection(e->step, CAN_ROWS);
-	bool phasors = !asked->refresh && !e->step->refresh && e->step->program->forcing_multiplications &&
+	bool phasors = !request->refresh && !e->step->refresh && e->step->program->forcing_multiplications &&
 		       !step_objection(e->step, CAN_REFRESH);
-	if (!asked->fast && !asked->phasors && (rows || phasors))
+	if (!request->fast && !request->phasors && (rows || phasors))
 		say(e, " * For long runs plgen --fast adds tables where they pay:%s%s%s.\n",
 		    rows ? " outputs by blocks of rows" : "", rows && phasors ? "," : "",
 		    phasors ? " rotated phasors of the loads" : "");

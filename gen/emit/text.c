@@ -148,6 +148,17 @@ static void say_row(const struct emitter *e, int count, const double *value, con
 	}
 }
 
+/* A matrix among others: one row stands on one line. */
+void emit_inner_matrix(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
+{
+	say(e, rows == 1 ? "    {{" : "  {\n");
+	if (rows == 1)
+		say_row(e, columns, value, *row_note);
+	else
+		emit_number_rows(e, rows, columns, value, row_note);
+	say(e, rows == 1 ? "}},  /* %s */\n" : "  },\n", *row_note);
+}
+
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note)
 {
 	for (int i = 0; i < rows; i++) {
@@ -325,7 +336,8 @@ void say_comment(const struct emitter *e, const char *indent, const char *text)
 void say_purpose(const struct emitter *e, const char *algorithm)
 {
 	say(e, "\n");
-	say_comment(e, "", format("From the runtime, %s: %s", algorithm, purpose_of(algorithm)));
+	say_comment(e, "", format("From the runtime, %s: %s. The macros give it the model's sizes and limits.",
+				  algorithm, purpose_of(algorithm)));
 }
 
 void say_include(const struct emitter *e, const char *algorithm)

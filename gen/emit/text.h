@@ -85,6 +85,8 @@ const char *scaled(double factor, const char *operand);           /* operand NUL
 /* rounded; an error at the step where it overflows */
 double finite_number(const struct emitter *e, mpq_srcptr q);
 void emit_number_rows(const struct emitter *e, int rows, int columns, const double *value, const char *const *row_note);
+void emit_inner_matrix(const struct emitter *e, int rows, int columns, const double *value,
+		       const char *const *row_note);
 /* static const double NAME_name[size[0]]...[size[dimensions - 1]], behind a blank line and the note, NULL: none; `row`:
  * of those of the last dimension, NULL: nothing is said of them */
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,

@@ -22,7 +22,7 @@ struct growth {                     /* what all responses with one denominator s
 	struct rectangle ***series; /* [factor][pole][k]: v_k */
 	int courses;
 	struct course *course;
-	unsigned long asked;        /* how often */
+	unsigned long requests;     /* how often */
 	mpq_t stride;               /* by which the last one moved */
 	struct rectangle **over_stride;     /* e^{p stride}; NULL: not asked for yet */
 };
@@ -272,7 +272,7 @@ static struct rectangle **exponentials_of(const struct spectrum *spectrum, struc
 		}
 		mpq_set(course->tau, tau);
 	}
-	course->used = ++growth->asked;
+	course->used = ++growth->requests;
 	return course->exponential;
 }
 

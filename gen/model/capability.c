@@ -134,7 +134,7 @@ struct objection objection_to(enum capability requested, const struct facts *f, 
 const char *words_before(enum capability requested)
 {
 	static const char *const words[CAPABILITIES] = {
-#define ASKED(name, words) [CAN_##name] = words,
+#define REQUESTED(name, words) [CAN_##name] = words,
 #include "model/capability.def"
 	};
 	return words[requested];

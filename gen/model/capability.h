@@ -36,7 +36,7 @@ struct facts {
 #include "model/capability.def"
 };
 enum capability {
-#define ASKED(name, words) CAN_##name,
+#define REQUESTED(name, words) CAN_##name,
 #include "model/capability.def"
 	CAPABILITIES
 };

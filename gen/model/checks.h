@@ -24,7 +24,7 @@ int  whole_number(struct building *b, struct node *node, int low, int high, cons
 /* from its tolerance, which is the default where it is 0; of what is no series, none */
 void choose_order(struct model *model, bool single);
 /* An argument of the command line, then *at is where it stands; else what the spec has */
-struct node *requested_or_written(struct building *b, const char *asked, struct node *written, struct place *at);
+struct node *requested_or_written(struct building *b, const char *requested, struct node *written, struct place *at);
 
 /* ---- jacobian.c: of the equations for all time, where states and time are fixed ---- */
 

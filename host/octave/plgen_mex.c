@@ -215,8 +215,8 @@ static int call_status(const struct loaded *m, const void *s)
 /* n steps: rows and times after each; the number of those that went well */
 static void run(const struct loaded *m, void *s, const mxArray *const *in, mxArray **out)
 {
-    const double asked = mxGetScalar(in[0]);
-    const size_t n = (size_t)asked, inputs = (size_t)OF(m, inputs), outputs = (size_t)OF(m, outputs);
+    const double count = mxGetScalar(in[0]);
+    const size_t n = (size_t)count, inputs = (size_t)OF(m, inputs), outputs = (size_t)OF(m, outputs);
     void *u = numbers(m, in[1], n * inputs), *rows = room(n * outputs);
     mxArray *t = mxCreateDoubleMatrix(1, (mwSize)n, mxREAL);
     size_t k;

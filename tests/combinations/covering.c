@@ -24,14 +24,14 @@ enum { MOST = 52, MOST_REFUSALS = 600, LINE = 1000, ROW = 10, PAGE = 118 };
 struct facts {
 #define FACT(name, is) bool name;
 #define STEP_FACT(name) bool name;
-#define ASKED(name, words) bool name;
+#define REQUESTED(name, words) bool name;
 #include "model/capability.def"
 };
 
 static const struct { const char *name; size_t place; } fact[] = {
 #define FACT(name, is) { #name, offsetof(struct facts, name) },
 #define STEP_FACT(name) { #name, offsetof(struct facts, name) },
-#define ASKED(name, words) { #name, offsetof(struct facts, name) },
+#define REQUESTED(name, words) { #name, offsetof(struct facts, name) },
 #include "model/capability.def"
 };
 enum { FACTS = sizeof fact / sizeof *fact };
@@ -39,7 +39,7 @@ enum { FACTS = sizeof fact / sizeof *fact };
 struct row { const char *asked, *words, *reason; };
 static const struct row table[] = {
 #define FIRST(format, ...) format
-#define ASKED(name, words) { #name, words, NULL },
+#define REQUESTED(name, words) { #name, words, NULL },
 #define AGAINST(name, when, ...) { #name, NULL, FIRST(__VA_ARGS__, "") },
 #include "model/capability.def"
 };
@@ -49,7 +49,7 @@ enum { TABLE = sizeof table / sizeof *table };
 static const struct row *row_against(const struct facts *f)
 {
 	const struct row *at = table;
-#define ASKED(name, words) at++;
+#define REQUESTED(name, words) at++;
 #define AGAINST(name, when, ...) \
 	if (f->name && (when)) \
 		return at; \

@@ -17,6 +17,7 @@ cat >identifiers.list <<'END'
 anchor refresh
 anchored refreshed
 anchors refresh
+asked request
 bank schedule
 banks operators
 channel force_column
@@ -33,8 +34,10 @@ lean tangent
 losses truncation_errors
 person text
 rubs has_dry_friction
+scene assembly
 shorten modal_truncation except gen/step/certify/passes.c
 shortening modal_truncation
+sketch network
 speaker written_model
 statics static_correction
 struck impact
@@ -45,6 +48,8 @@ taps samples
 tell report
 told reported
 unseen unobservable,_unresolved
+wave forcing
+waves forcings
 END
 cat >everywhere.list <<'END'
 grips friction_forces

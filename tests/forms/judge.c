@@ -87,17 +87,17 @@ static void fill_waves(const struct linear *system, struct leg *f)
 {
     int at = f->first_load;
     for (int l = 0; l < system->loads; at += system->load[l++].columns) {
-        const struct wave *wave = system->load[l].wave;
-        const int trig = mpq_sgn(wave->w) ? 2 : 1;
+        const struct forcing *forcing = system->load[l].forcing;
+        const int trig = mpq_sgn(forcing->w) ? 2 : 1;
         for (int c = 0; c < system->load[l].columns; c++) {
             mpq_t *row = f->A + (at + c) * f->size + at;
-            mpq_set(row[c], wave->a);
+            mpq_set(row[c], forcing->a);
             if (c >= trig)
                 mpq_set_ui(row[c - trig], (unsigned long)(c / trig), 1);
             if (trig == 2 && c % 2 == 0)
-                mpq_neg(row[c + 1], wave->w);
+                mpq_neg(row[c + 1], forcing->w);
             else if (trig == 2)
-                mpq_set(row[c - 1], wave->w);
+                mpq_set(row[c - 1], forcing->w);
         }
     }
 }

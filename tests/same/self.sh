@@ -6,6 +6,8 @@ set -u
 build=$(cd "$1" && pwd) || exit 99
 root=$(cd "$2" && pwd) || exit 99
 . "$root/tests/tap.sh"
+# A build outside of the tree does not find the runtime by itself.
+export PLGEN_RUNTIME="$root/runtime"
 
 # same ARGUMENT ...: same.sh on five runs, to `log`; sets `status`
 same() {

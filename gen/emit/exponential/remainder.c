@@ -52,7 +52,7 @@ bool reads_force_columns(const struct model *model)
 }
 
 /* Beside friction outputs alone ask the remainder, and of equations that have none: its force is no formula. */
-static bool is_asked(const struct emitter *e, int force_column)
+static bool is_read(const struct emitter *e, int force_column)
 {
 	return e->model->contacts.drags == 0 || reads_force_column(e->model, force_column);
 }
@@ -64,7 +64,7 @@ static struct reads reads_of_remainder(const struct emitter *e)
 	const struct form **form = ARRAY(const struct form *, (size_t)all + 1);
 	for (int k = 0; k < e->model->schedule.operators; k++)
 		for (int c = 0; c < force_columns; c++)
-			if (is_asked(e, c))
+			if (is_read(e, c))
 				form[requested++] = e->model->schedule.operator[k].left[c];
 	return reads_of(e->model, requested, form);
 }
@@ -163,7 +163,7 @@ static void emit_lefts(const struct emitter *e, const struct schedule *schedule)
 		formulas_new(e, (struct reading){ 0 }, e->model->remainder.force_columns, schedule->common);
 	struct tape *t = formulas_tape(f);
 	for (int c = 0; c < e->model->remainder.force_columns; c++) {
-		tape_ref form = is_asked(e, c) ? formula(f, schedule->common[c]) : tape_number(t, 0);
+		tape_ref form = is_read(e, c) ? formula(f, schedule->common[c]) : tape_number(t, 0);
 		tape_set(t, format("left[%d]", c), with_excess(f, c, form, schedule), 15, name_of_force_column(e, c));
 	}
 	emit_formulas(f, 4);

@@ -11,7 +11,7 @@
 static void emit_switching_function(const struct emitter *e, const struct pieces *p)
 {
 	int size = e->step->layout.size, n = functions_of(e);
-	open_function(e, "switching function i", "static double $o_switching_function(int i, const double x[%d])",
+	open_function(e, "Switching function i", "static double $o_switching_function(int i, const double x[%d])",
 		      size);
 	if (n == 1) {
 		say(e, "    (void)i;\n"

@@ -37,7 +37,7 @@ struct matrices {
 	size_t of;
 };
 
-#define EVENT_FUNCTIONS "switching functions, e = row . x; where one passes a breakpoint the equations change"
+#define EVENT_FUNCTIONS "Switching functions, e = row . x; where one passes a breakpoint the equations change"
 
 static void emit_rows(const struct emitter *e, const struct pieces *pieces)
 {
@@ -467,13 +467,15 @@ void emit_event_note(const struct emitter *e)
 	say(e, "\n/* How an event is found\n *\n");
 	note(e, "Between events the model is linear: x' = A x (%s), x being the states and the loads that act on them, "
 		"so that a step is a product with e^{A h} (%s).", table(e, "slopes"), table(e, "pieces"));
-	note(e, "switching functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
+	note(e, "Switching functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
 	     table(e, "row"), table(e, "breakpoint"), event_text(e));
 	note_clear_steps(e, function, table(e, format("%schord_error", of)));
 	note_search(e, function, of);
 	note(e, "At an event %s, and the rest of the step goes on in the region behind ($o_matrix).",
-	     guards ? "impacts turn the speed of approach to -restitution times it, and of what may stick or slip the "
-		      "combination holds that contradicts no force" : "the state is taken there");
+	     !guards ? "the state is taken there" : e->model->switching->impacts > 0
+			? "impacts turn the speed of approach to -restitution times it, the combination of sticking "
+			  "and slipping that contradicts no force is taken"
+			: "the combination of sticking and slipping that contradicts no force is taken");
 	note(e, "A breakpoint passed by less than rounding errors is no event. $n_crossings lists those of a step; "
 		"more than $N_MAX_EVENTS set PL_TOO_MANY_EVENTS.");
 	say(e, " */\n");

@@ -95,11 +95,8 @@ void put_matrices(const struct emitter *e, const char *name, const char *note, i
 		   double *const *value, const char *const *row_name)
 {
 	open_table(e, "double", name, format("[%d][%d][%d]", count, rows, columns), note);
-	for (int k = 0; k < count; k++) {
-		say(e, "  {\n");
-		emit_number_rows(e, rows, columns, value[k], row_name);
-		say(e, "  },\n");
-	}
+	for (int k = 0; k < count; k++)
+		emit_inner_matrix(e, rows, columns, value[k], row_name);
 	close_table(e);
 }
 

@@ -22,7 +22,7 @@ void emit_switching_types(const struct emitter *e)
 	       "    int crossings;        /* in the last step */\n"
 	       "    int placed;           /* 0: a state was set, its intervals are not known%s */\n"
 	       "%s%s"
-	       "    int interval[%d];      /* of each expression */\n"
+	       "    int interval[%d];      /* of each switching function */\n"
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
 	       "} $n_contact;\n\n",
@@ -45,7 +45,7 @@ void emit_crossing_declarations(const struct emitter *e)
 {
 	if (!has_switching(e) || regions_of_series(expansion(e)))
 		say(e, "int    $n_region(const $n *s);           "
-		       "/* its number: an interval of each expression, see the source */\n");
+		       "/* its number: an interval of each switching function */\n");
 	say(e, "uint64_t $n_crossed(const $n *s);        /* breakpoints crossed since init or set */\n"
 	       "int    $n_crossings(const $n *s, pl_crossing crossing[$N_MAX_EVENTS]);  "
 	       "/* those of the last step, by time; how many */\n");

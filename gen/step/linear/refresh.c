@@ -117,7 +117,7 @@ static bool any_load(const struct step *step, const struct refresh *refresh)
 }
 
 /* NULL: more than 1 was asked for, or serves best. What a need is met with is the cheapest that there is. */
-static const char *not_asked_for(const struct model *model)
+static const char *not_requested(const struct model *model)
 {
 	const struct request *requested = &model->request;
 	if (requested->refresh)
@@ -127,11 +127,11 @@ static const char *not_asked_for(const struct model *model)
 
 void check_refresh(struct step *step)
 {
-	const char *against = step_objection(step, CAN_REFRESH), *not_asked = not_asked_for(step->model);
+	const char *against = step_objection(step, CAN_REFRESH), *unwanted = not_requested(step->model);
 	if (against)
 		note_aside(step, against);
 	if (any_load(step, refresh_of(step)))
-		step->no.refresh = not_asked && !against ? not_asked : against;
+		step->no.refresh = unwanted && !against ? unwanted : against;
 }
 
 void leave_out_refresh(struct step *step, const char *why)
@@ -144,7 +144,7 @@ void leave_out_refresh(struct step *step, const char *why)
 void plan_refresh(struct step *step)
 {
 	struct refresh *refresh = refresh_of(step);
-	if (step->no.refresh || not_asked_for(step->model) || step_objection(step, CAN_REFRESH) ||
+	if (step->no.refresh || not_requested(step->model) || step_objection(step, CAN_REFRESH) ||
 	    !any_load(step, refresh))
 		return;
 	list_terms(refresh, step, true);
