@@ -94,14 +94,14 @@ static void emit_series_impacts(const struct emitter *e)
 	emit_int_list(e, "event_after", c->assignments, value);
 }
 
-static void emit_events(const struct emitter *e, const char *name, const char *divided, const char *watch)
+static void emit_events(const struct emitter *e, const char *name, const char *switching, const char *watch)
 {
 	const struct contacts *c = contacts(e);
 	say(e, "static const pl_events $n_%s = {\n"
 	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_impacts,\n"
 	       "    $n_event_place[0],\n"
 	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
-	       "};\n", name, divided, watch, c->holds, c->series_impacts, c->conflicts);
+	       "};\n", name, switching, watch, c->holds, c->series_impacts, c->conflicts);
 }
 
 void emit_event_tables(const struct emitter *e)
@@ -116,7 +116,7 @@ void emit_event_tables(const struct emitter *e)
 				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);
 	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n",
 	    *conflict ? conflict : "{0u, -1, 0}");
-	emit_events(e, "events", "divided", "event_watch");
+	emit_events(e, "events", "series_switching", "event_watch");
 }
 
 void emit_events_along(const struct emitter *e)
