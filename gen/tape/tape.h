@@ -20,8 +20,8 @@ enum tape_op {
 	TAPE_TIME,                  /* t; `part` 1: the time at which conditions on time hold as they do */
 	TAPE_TABLE,                 /* entry `index` of table `part` of the reader's */
 	TAPE_FRICTION,              /* a friction force of the model */
-	TAPE_ABOVE,                 /* a choice: expression `index` is above its breakpoint of rank `part` */
-	TAPE_HELD,                  /* a choice: expression `index` is held in interval `part` */
+	TAPE_ABOVE,                 /* a choice: switching function `index` is above its breakpoint of rank `part` */
+	TAPE_HELD,                  /* a choice: switching function `index` is held in interval `part` */
 	TAPE_TRUE, TAPE_FALSE,      /* choices */
 	/* of a */
 	TAPE_NEG, TAPE_SIGN, TAPE_SIZE, TAPE_CALL, /* -a; -1, 0 or 1; |a|; function `index` of a */

@@ -265,14 +265,14 @@ static void make_slip(struct constraints *all, int index)
 	const struct drag *drag = &w->step->model->contacts.drag[h->drag];
 	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
 	h->slips = new_sequence(w, (struct sequence){
-		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .function = hold->function,
+		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .switching = hold->function,
 		.breakpoint = hold->breakpoint, .a = hold->above ? force : back, .b = hold->above ? back : force });
 }
 
 static int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other)
 {
 	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_HOLD, .state = NONE,
-						  .function = hold->function, .breakpoint = hold->breakpoint,
+						  .switching = hold->function, .breakpoint = hold->breakpoint,
 						  .a = held, .b = other });
 }
 
