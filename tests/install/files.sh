@@ -64,15 +64,21 @@ result $? 'plrun runs'
 
 # A chart of any model, by the sources of other solvers that are installed; without a word of the source tree
 mkdir elsewhere bare
-cp "$prefix/share/plgen/models/scs.spec" 'elsewhere/my own.spec'
+cat >'elsewhere/my own.spec' <<'END'
+model own
+coord x "mm"
+init x = 10 "mm"
+(2 "kg")*x'' + (20 "N s/m")*x' + (18 "kN/m")*x = 0
+step 1 "ms"
+END
 if command -v gnuplot >/dev/null; then
 	(cd elsewhere && CHARTS_OPTIMIZE=-O0 plrun --chart 'my own.spec' 0.2 -o 'a chart') >out 2>log
 	[ $? -eq 0 ] && [ "$(grep -c '^error below 1e-[0-9]*: ' out)" -eq 4 ] &&
-		grep -q '</svg>' 'elsewhere/a chart/scs.svg'
+		grep -q '</svg>' 'elsewhere/a chart/own.svg'
 	result $? 'plrun --chart: a picture and a verdict for each wanted error'
 	for method in exact DOP853 RADAU5 RADAU9 'GSL rk8pd' 'CVODE BDF'; do
-		awk -F, -v method="\"$method\"" '$1 == method && $6 == "ok" && $5 < 1e-2 { good++ }
-			END { exit !good }' 'elsewhere/a chart/scs.csv' || echo "$method: no error below 1e-2"
+		awk -F, -v method="\"$method\"" '$1 == method && $6 == "ok" && $5 < (method ~ /exact/ ? 1e-13 : 1e-2) {
+			good++ } END { exit !good }' 'elsewhere/a chart/own.csv' || echo "$method: no row is near"
 	done >log
 	[ ! -s log ]
 	result $? 'plrun --chart: the solvers of the charts'

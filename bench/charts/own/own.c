@@ -82,7 +82,8 @@ static void open_ours(struct line *line, const char *folder)
 		line->model = model;
 	line->steps = line->tolerance ? 1 : (int)line->setting;
 	line->state = room_for(1, OF(line, size));
-	line->rows = line->steps == 1 &&
+	/* outputs may be in units of their own, and states are in SI units */
+	line->rows = line->steps == 1 && !dlsym(handle, "subject_units") &&
 		same_names(N, OF(line, outputs), OF(line, state_names), OF(line, output_names));
 }
 
