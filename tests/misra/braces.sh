@@ -30,6 +30,9 @@ for spec in "$root"/models/*.spec; do
 	name=${spec##*/}
 	make "${name%.spec}_x" "models/$name"
 done
+for spec in sdcsf oscillator tuned_floor gear1; do
+	make ${spec}_fast_x models/$spec.spec --fast
+done
 for spec in sdcsf quarter_car_bumps pendulum; do
 	make ${spec}_rhs models/$spec.spec --rhs
 done
