@@ -74,11 +74,11 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
 	say(e, "typedef struct $n_instances {\n"
 	       "    size_t count;\n"
-	       "    double *y;        /* [$N_BATCH_ROWS][count]: of each %s */\n",
-	    alone ? "the bytes of its struct" : spell(e, "%s, as in struct $n", row_list(e)));
+	       "    double *y;        /* [$N_BATCH_ROWS][count]: each instance's %s */\n",
+	    alone ? "bytes of its struct" : spell(e, "%s, as in struct $n", row_list(e)));
 	if (b->factors)
-		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: its own, by $n_batch_use; NULL: all have "
-		       "those of shared */\n");
+		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: coefficients of each instance, set by "
+		       "$n_batch_use; NULL: all have those of shared */\n");
 	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
 	       "NULL: not kept */\n"
 	       "    $n shared;        /* %s */\n"
@@ -124,14 +124,15 @@ static bool *loads_of_outputs(const struct batch *b)
 static void emit_shared(const struct batch *b)
 {
 	const struct emitter *e = b->e;
-	open_function(e, "What instances share in a step, which is taken: before it,",
+	open_function(e, "now receives what all instances share in this step; time then advances by h",
 		      "static void $n_share_step($n *s, const double *u, double *now)");
 	emit_load_states(e, loads_of_step(e), false);
 	for (int i = 0; i < b->after; i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	emit_step_end(e);
 	close_function(e, "u now");
-	open_function(e, "and in the outputs behind it", "static void $n_share_out(const $n *s, double *now)");
+	open_function(e, "now receives what all instances share in the outputs after a step",
+		      "static void $n_share_out(const $n *s, double *now)");
 	emit_load_states(e, loads_of_outputs(b), false);
 	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);

@@ -134,7 +134,7 @@ static void emit_operations(const struct emitter *e, const struct entries *x)
 	if (x->operations == 0)
 		return;
 	say(e, "\nstatic const pl_operation $n_operation[%d] = {"
-	       "  /* formulas of params: on %d params, %d constants, earlier results */",
+	       "  /* formulas of params; their operands are %d params, %d constants, earlier results */",
 	    x->operations, x->tuning->params, x->constants);
 	for (int i = 0; i < x->operations; i++)
 		say(e, "%s{%s, %d, %d}", next_value(i), x->operation[i].what, x->operation[i].a, x->operation[i].b);
@@ -146,7 +146,7 @@ static void emit_places(const struct emitter *e, const struct entries *x)
 	if (x->places == 0)
 		return;
 	say(e, "\nstatic const pl_place $n_entries[%d] = {"
-	       "  /* entries of A by them: row, column, which number, 1: with the other sign */", x->places);
+	       "  /* entries of A that are such results: row, column, number of the result, 1: negated */", x->places);
 	for (int i = 0; i < x->places; i++)
 		say(e, "%s{%d, %d, %d, %d}", next_value(i), x->place[i].row, x->place[i].column,
 		    x->place[i].made.number, x->place[i].made.negative);

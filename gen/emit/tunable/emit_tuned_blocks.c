@@ -260,7 +260,7 @@ static const char *group_text(const struct emitter *e, const struct tuned_block 
 
 static void emit_groups_of(const struct emitter *e, int groups, const char *const *text)
 {
-	say(e, "\n/* Blocks of one shape together */\n"
+	say(e, "\n/* Blocks of one shape are computed together, as a group */\n"
 	       "static const pl_group $n_block_group[%d] = {\n", groups);
 	for (int k = 0; k < groups; k++)
 		say(e, "    %s%s", text[k], k < groups - 1 ? ",\n" : "\n};\n");
