@@ -12,9 +12,11 @@
 #undef pl_series_switching_next
 #undef pl_series_switching_place
 #undef pl_series_switching_rises
-#undef pl_entry
-#undef pl_equations
-#undef pl_equations_at
+#undef pl_entries
+#undef pl_entries_at
+#undef pl_entries_in
+#undef pl_formulas
+#undef pl_formulas_at
 #undef pl_events
 #undef pl_events_begin
 #undef pl_events_end

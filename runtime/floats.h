@@ -12,9 +12,11 @@
 #define pl_series_switching_next pl_series_switchingf_next
 #define pl_series_switching_place pl_series_switchingf_place
 #define pl_series_switching_rises pl_series_switchingf_rises
-#define pl_entry pl_entryf
-#define pl_equations pl_equationsf
-#define pl_equations_at pl_equationsf_at
+#define pl_entries pl_entriesf
+#define pl_entries_at pl_entriesf_at
+#define pl_entries_in pl_entriesf_in
+#define pl_formulas pl_formulasf
+#define pl_formulas_at pl_formulasf_at
 #define pl_events pl_eventsf
 #define pl_events_begin pl_eventsf_begin
 #define pl_events_end pl_eventsf_end

@@ -420,31 +420,35 @@ void pl_guards_compensated_change(const pl_guards *m, PL_REAL time, PL_REAL *x, 
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 
-/* W a = R x: equations for the highest derivatives a; x consists of the states, load states and inputs.  If every mass
- * that params change stands alone the generator has divided by it, and there is no W. */
-typedef struct pl_equations {
-    unsigned short rows;    /* entries of a */
-    unsigned short columns; /* entries of x */
-    unsigned short solves;  /* 1: there is a W, rows x rows, its columns behind those of R; 0: it is the unit matrix */
+/* Numbers that follow from params: these come first, then constants, then results of the operations. */
+typedef struct pl_formulas {
     unsigned short params, constants;
-    int operations, places;
+    int operations;
     const pl_two *constant;
     const pl_operation *operation;
-    const pl_place *place; /* of the entries that are not 0 */
-} pl_equations;
+} pl_formulas;
 
-/* Sets `value` to W^-1 R at these params, in double-double: row i begins at value[i width], width = columns + (solves ?
- * rows : 0); entries from `columns` on have no meaning.
- *     value  rows x width
- *     work   as many entries as there are operations
- * Returns 0; PL_SINGULAR if W is singular, perhaps within rounding, or a divisor is 0; PL_NOT_FINITE if a param or a
- * result is infinite or not a number.
+/* A matrix of such numbers. */
+typedef struct pl_entries {
+    unsigned short rows, columns;
+    int places;
+    const pl_place *place; /* of the entries that are not 0 */
+} pl_entries;
+
+/* Sets `made` to the results of all operations at these params, in double-double.  Returns 0; PL_SINGULAR if a divisor
+ * is 0, perhaps within rounding; PL_NOT_FINITE if a param is infinite or not a number.
  *
  * The error of an operation is below 2^-103 (in floats 2^-45) of its result, of a sum or difference 2^-103 of the sizes
- * of both numbers; a difference that may be rounding alone is set to 0.  Without W the error of an entry that is a sum
- * of products is below 2^-101 (in floats 2^-43) of the sum of sizes of its terms; with W that of row i, column j is
- * below 2^-101 of sum_k |W^-1|_ik times the largest, over rows, of the sizes of all terms in W a - R x for column j. */
-int pl_equations_at(const pl_equations *e, const PL_REAL *params, pl_two *value, pl_two *work);
+ * of both numbers; a difference that may be rounding alone is set to 0.  So the error of a sum of products is below
+ * 2^-101 (in floats 2^-43) of the sum of sizes of its terms. */
+int pl_formulas_at(const pl_formulas *f, const PL_REAL *params, pl_two *made);
+
+/* Sets `value` to the entries, rows x columns; of a matrix with columns for several segments of time to those of one:
+ * of `loads` columns behind the first `before` in each segment, and those behind them all; rows from `before` on are
+ * those of every segment.  Returns 0, or PL_NOT_FINITE if an entry is infinite or not a number. */
+int pl_entries_at(const pl_entries *m, const pl_formulas *f, const PL_REAL *params, const pl_two *made, pl_two *value);
+int pl_entries_in(const pl_entries *m, const pl_formulas *f, const PL_REAL *params, const pl_two *made, int before,
+                  int loads, int segments, int segment, pl_two *value);
 
 /* Sets D to the first `states` rows of e^{A tau} - I, tau in seconds.
  *     A      size x size [1/s]; the entries below row `states` and left of column `states` are 0: loads and inputs do
@@ -468,26 +472,13 @@ PL_REAL pl_ramp_before(pl_two whole, pl_two slope, PL_REAL h);
 
 /* ---- retune.h: coefficients of a step, independent block by independent block --------------------------------- */
 
-/* An entry of A in x' = A x [1/s]. */
-typedef struct pl_entry {
-    unsigned short row, column;
-    pl_two value;
-} pl_entry;
-
 /* An independent block of the equations: no other state acts on it.  x consists of its states and the load states and
  * inputs that act on it. */
 typedef struct pl_block {
-    /* Rows: its highest derivatives, then the frequencies of its loads, in column 0.  Columns: its states, its load
-     * states in each segment of time, its inputs. */
-    pl_equations equations;
+    pl_formulas formulas;
+    pl_entries entries;           /* of A in x' = A x [1/s], with columns for load states in each segment of time */
     unsigned short states, loads, inputs; /* entries of x */
     unsigned short segments;      /* number of time segments, each with its formulas of loads */
-    unsigned short derivatives;   /* number of highest derivatives, */
-    unsigned short entries;       /* of entries of A that no param changes */
-    unsigned short turns;         /* of pairs of load states, cosine and sine, whose frequency params change */
-    const unsigned short *row;    /* of each highest derivative its row of A */
-    const pl_entry *entry;
-    const unsigned short *turn;   /* of each pair its row of the equations, and the place of its cosine in x */
     const unsigned short *place;  /* of each entry of x its place in x of the full model */
 } pl_block;
 

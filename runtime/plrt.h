@@ -403,7 +403,7 @@ typedef struct pl_operation {
     unsigned short what, a, b;
 } pl_operation;
 
-/* Number `number`, with the other sign where negative is 1, is one entry of [R | W]. */
+/* Number `number`, with the other sign where negative is 1, is one entry of a matrix. */
 typedef struct pl_place {
     unsigned short row, column, number, negative;
 } pl_place;

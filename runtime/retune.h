@@ -12,9 +12,10 @@
  *     PL_SAMPLES                 most derivatives of an input that goes from sample to sample; 0: none does
  *     PL_WHOLE, PL_LISTED        1: some group has a block, whose factors are a table; some has several, by lists
  *     PL_KEEPS                   1: a block that reads the spec's params alone keeps its factors
- *     PL_ROWS, PL_WIDTH          of the equations PL_EQUATIONS, of frequencies and outputs: rows, columns with W's
- *     PL_SOLVED                  1: they are those of the only block, too
- *     PL_OUT, PL_OUT_FIRST, PL_OUT_COLUMNS      outputs that params change, from this row on
+ *     PL_ROWS, PL(others)        rows of outputs that params change, then of frequencies in column 0; by PL_FORMULAS of
+ *     PL_OPERATIONS              so many operations
+ *     PL_SOLVED                  1: these are those of the only block, too
+ *     PL_OUT, PL_OUT_COLUMNS     outputs that params change; columns of the rows
  *     PL_PHASES, PL_RATES, PL_GROWTHS           of loads; 1: some have frequencies that params change
  *     PL_PEAKS                   outputs that are peaks, of peaks.h
  *     PL_WORK, PL_PASS_WORK, PL_SIZE            numbers of two words that a retune works in, a state between; of x
@@ -22,9 +23,9 @@
  *     PL_JUMPS                   1: PL(jump), by that; PL(pass_steps)(s, n) moves the rest of it n steps on
  *
  *     PL(nominal), PL(until)     the spec's coefficients; time to a change of the loads
- *     PL(retune_groups)(c, params, h, value, work)   each group by PL(retune_group), if there is one
+ *     PL(retune_groups)(c, params, h, made, work)   each group by PL(retune_group), if there is one
  *     PL(block)[PL_BLOCKS], PL(vector_now)(s, u, x)    x of the whole now
- *     PL(rate_row)[PL_PHASES]    rows of the frequencies, -1: no param changes it; PL(decays)[PL_GROWTHS]
+ *     PL(rate_entry)[PL_PHASES]  entries for the frequencies, -1: no param changes it; PL(decays)[PL_GROWTHS]
  *     PL(phase_rate), PL(growth_rate)  of loads */
 #include "numbers.h"
 
@@ -37,50 +38,10 @@ static inline int PL(block_size)(const pl_block *b)
     return b->states + b->loads + b->inputs;
 }
 
-static inline int PL(block_width)(const pl_block *b)
+/* A of x' = A x in a segment of time; made: by its formulas */
+static int PL(slopes)(const pl_block *b, const real *params, const pl_two *made, int segment, pl_two *A)
 {
-    return b->equations.columns + (b->equations.solves ? b->equations.rows : 0);
-}
-
-/* Where the equations have what column j of A has in a segment of time */
-static inline int PL(solved_column)(const pl_block *b, int segment, int j)
-{
-#if PL_SEGMENTS > 1
-    const int skipped = j < b->states + b->loads ? segment : PL_SEGMENTS - 1;
-    return j < b->states ? j : j + skipped * b->loads;
-#else
-    (void)b;
-    (void)segment;
-    return j;
-#endif
-}
-
-/* A of x' = A x in a segment of time, from the solved equations */
-static void PL(slopes)(const pl_block *b, const pl_two *value, int segment, pl_two *A)
-{
-    static const pl_two none = {0, 0};
-    const int size = PL(block_size)(b), width = PL(block_width)(b);
-    int i, j;
-    for (i = 0; i < size * size; i++) {
-        A[i] = none;
-    }
-    for (i = 0; i < b->entries; i++) {
-        A[b->entry[i].row * size + b->entry[i].column] = b->entry[i].value;
-    }
-#if PL_RATES
-    for (i = 0; i < b->turns; i++) {
-        pl_two *const at = A + b->turn[2 * i + 1] * (size + 1);
-        const pl_two w = value[b->turn[2 * i] * width];
-        at[size] = w;
-        at[1].hi = -w.hi;
-        at[1].lo = -w.lo;
-    }
-#endif
-    for (i = 0; i < b->derivatives; i++) {
-        for (j = 0; j < size; j++) {
-            A[b->row[i] * size + j] = value[i * width + PL(solved_column)(b, segment, j)];
-        }
-    }
+    return pl_entries_in(&b->entries, &b->formulas, params, made, b->states, b->loads, PL_SEGMENTS, segment, A);
 }
 
 #endif
@@ -103,19 +64,22 @@ static int PL(ramp_cancels)(const pl_group *g, const pl_block *b, const pl_two *
 
 /* D <- e^{A h} - I, its rows of states, in each segment of time: once more, in two words, where a ramp's value before
  * the step would else be lost */
-static int PL(increments)(const pl_group *g, const pl_block *b, const pl_two *value, real h, pl_two *D, pl_two *work)
+static int PL(increments)(const pl_group *g, const pl_block *b, const real *params, const pl_two *made, real h,
+                          pl_two *D, pl_two *A)
 {
     const int size = PL(block_size)(b);
-    pl_two *const further = work + size * size;
+    pl_two *const further = A + size * size;
     int segment, status = 0;
 
     for (segment = 0; segment < b->segments && status == 0; segment++) {
         pl_two *const to = D + segment * b->states * size;
-        PL(slopes)(b, value, segment, work);
-        status = pl_increment(size, b->states, work, h, 1, to, further);
+        status = PL(slopes)(b, params, made, segment, A);
+        if (status == 0) {
+            status = pl_increment(size, b->states, A, h, 1, to, further);
+        }
 #if PL_SAMPLES > 0
         if (status == 0 && PL(ramp_cancels)(g, b, to, h)) {
-            status = pl_increment(size, b->states, work, h, 2, to, further);
+            status = pl_increment(size, b->states, A, h, 2, to, further);
         }
 #endif
     }
@@ -267,26 +231,25 @@ static int PL(keeps)(unsigned reads, const real *params, real h)
 }
 #endif
 
-/* value: of the equations of the only block; else NULL */
-static int PL(retune_group)(const pl_group *g, const real *params, real h, const pl_two *value, real *to, real *apart,
+/* made: by the formulas of the only block; else NULL */
+static int PL(retune_group)(const pl_group *g, const real *params, real h, const pl_two *made, real *to, real *apart,
                             pl_two *work)
 {
     int k, status = 0;
     for (k = 0; k < g->blocks && status == 0; k++) {
         const pl_block *const b = g->block + k;
-        pl_two *const solved = work + b->segments * b->states * PL(block_size)(b);
+        pl_two *const further = work + b->segments * b->states * PL(block_size)(b);
 #if PL_SOLVED
-        status = PL(increments)(g, b, value, h, work, solved);
+        status = PL(increments)(g, b, params, made, h, work, further);
 #else
-        pl_two *const further = solved + b->equations.rows * PL(block_width)(b);
 #if PL_KEEPS
         if (PL(keeps)(g->reads[k], params, h)) {
             continue;
         }
 #endif
-        status = pl_equations_at(&b->equations, params, solved, further);
+        status = pl_formulas_at(&b->formulas, params, further);
         if (status == 0) {
-            status = PL(increments)(g, b, solved, h, work, further);
+            status = PL(increments)(g, b, params, further, h, work, further + b->formulas.operations);
         }
 #endif
         if (status == 0) {
@@ -299,12 +262,11 @@ static int PL(retune_group)(const pl_group *g, const real *params, real h, const
             PL(take)(g, k, work, to, apart);
         }
     }
-    (void)params;
-    (void)value;
+    (void)made;
     return status;
 }
 
-static int PL(retune_groups)(PL(coeffs) *c, const real *params, real h, const pl_two *value, pl_two *work);
+static int PL(retune_groups)(PL(coeffs) *c, const real *params, real h, const pl_two *made, pl_two *work);
 
 #endif
 
@@ -315,7 +277,7 @@ static int PL(rates_are_wrong)(const pl_two *value)
 {
     int i, wrong = 0;
     for (i = 0; i < PL_PHASES; i++) {
-        wrong |= PL(rate_row)[i] >= 0 && value[PL(rate_row)[i] * PL_WIDTH].hi < 0;
+        wrong |= PL(rate_entry)[i] >= 0 && value[PL(rate_entry)[i]].hi < 0;
     }
     return wrong;
 }
@@ -328,8 +290,8 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
     for (i = 0; i < PL_PHASES; i++) {
 #if PL_RATES
         const pl_rate *const rate = &c->phase_rate[i];
-        if (PL(rate_row)[i] >= 0) {
-            c->phase_rate[i] = pl_rate_of(value[PL(rate_row)[i] * PL_WIDTH]);
+        if (PL(rate_entry)[i] >= 0) {
+            c->phase_rate[i] = pl_rate_of(value[PL(rate_entry)[i]]);
         } else {
             c->phase_rate[i] = PL(nominal).phase_rate[i];
         }
@@ -337,7 +299,7 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
         const pl_rate *const rate = &PL(phase_rate)[i];
 #endif
 #if !PL_ANY_STEP
-        if (PL(rate_row)[i] < 0) {
+        if (PL(rate_entry)[i] < 0) {
             continue;
         }
 #endif
@@ -347,7 +309,7 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
 }
 #endif
 
-static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, real h, pl_two *work)
+static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, const pl_two *made, real h, pl_two *work)
 {
 #if PL_OUT > 0 || (PL_ANY_STEP && PL_GROWTHS > 0)
     int i;
@@ -355,7 +317,7 @@ static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, real h, pl_two
 #if PL_OUT > 0
     for (i = 0; i < PL_OUT * PL_OUT_COLUMNS; i++) {
         const int row = i / PL_OUT_COLUMNS, column = i % PL_OUT_COLUMNS;
-        c->out[row][column] = value[(PL_OUT_FIRST + row) * PL_WIDTH + column].hi;
+        c->out[row][column] = value[i].hi;
     }
 #endif
 #if PL_PHASES > 0 && (PL_RATES || PL_ANY_STEP)
@@ -367,11 +329,12 @@ static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, real h, pl_two
     }
 #endif
 #if PL_PEAKS > 0
-    PL(slopes)(PL(block), value, 0, work);
+    (void)PL(slopes)(PL(block), c->params, made, 0, work);
     PL(retune_peaks)(c, work, h);
 #endif
     (void)c;
     (void)value;
+    (void)made;
     (void)h;
     (void)work;
 }
@@ -390,23 +353,25 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
     PL(coeffs) fresh = PL(nominal), *const to = &fresh;
 #endif
 #if PL_ROWS > 0
-    pl_two value[PL_ROWS * PL_WIDTH];
+    pl_two value[PL_ROWS * PL_OUT_COLUMNS];
 #else
     const pl_two *const value = NULL;
+#endif
+#if PL_OPERATIONS > 0
+    pl_two made[PL_OPERATIONS];
+#else
+    pl_two *const made = NULL;
 #endif
     pl_two work[PL_WORK];
     int i, status = 0;
     if (PL_ANY_STEP ? !(h > 0) : h != PL(nominal).h) {
         return PL_NO_STEP;
     }
-#if PL_ROWS == 0
-    for (i = 0; i < PL_PARAMS; i++) {
-        if (params[i] - params[i] != 0) {
-            return PL_NOT_FINITE;
-        }
+    status = pl_formulas_at(&PL_FORMULAS, params, made);
+#if PL_ROWS > 0
+    if (status == 0) {
+        status = pl_entries_at(&PL(others), &PL_FORMULAS, params, made, value);
     }
-#else
-    status = pl_equations_at(&PL_EQUATIONS, params, value, work);
 #endif
 #if PL_RATES
     if (status == 0 && PL(rates_are_wrong)(value)) {
@@ -415,7 +380,7 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #endif
 #if PL_WHOLE || PL_LISTED
     if (status == 0) {
-        status = PL(retune_groups)(to, params, h, value, work);
+        status = PL(retune_groups)(to, params, h, made, work);
     }
 #endif
     if (status != 0) {
@@ -430,7 +395,7 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #endif
     to->h = h;
 #endif
-    PL(retune_others)(to, value, h, work);
+    PL(retune_others)(to, value, made, h, work);
 #if !PL_SOLVED
     *c = fresh;
 #endif
@@ -450,43 +415,44 @@ void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
 
 #if PL_BLOCKS > 0
 /* x <- e^{A tau} x, its first `rows`; not numbers where that is not finite */
-static void PL(advance)(const pl_block *b, const pl_two *value, int segment, int rows, real tau, real *x, pl_two *work)
+static void PL(advance)(const PL_TYPE *s, const pl_block *b, const pl_two *made, int segment, int rows, real tau,
+                        real *x, pl_two *A)
 {
     const int size = PL(block_size)(b);
-    pl_two *const D = work + size * size, *const further = D + size * size;
+    pl_two *const D = A + size * size, *const further = D + size * size;
     int i, j, found;
-    PL(slopes)(b, value, segment, work);
-    found = pl_increment(size, rows, work, tau, 1, D, further) == 0;
+    found = PL(slopes)(b, s->coeffs.params, made, segment, A) == 0 &&
+            pl_increment(size, rows, A, tau, 1, D, further) == 0;
     for (i = 0; i < rows; i++) {
         real more = 0;
         for (j = 0; j < size && found; j++) {
             more += D[i * size + j].hi * x[j];
         }
-        work[i].hi = found ? more : more / more;
+        further[i].hi = found ? more : more / more;
     }
     for (i = 0; i < rows; i++) {
-        x[i] += work[i].hi;
+        x[i] += further[i].hi;
     }
 }
 
 /* One block; where the loads change on the way, all of its x, since more follows */
 static void PL(pass_block)(const PL_TYPE *s, const pl_block *b, real tau, real *x, pl_two *work)
 {
-    pl_two *const further = work + b->equations.rows * PL(block_width)(b);
+    pl_two *const further = work + b->formulas.operations;
     real done = 0;
     int segment = 0, rows = b->states;
-    (void)pl_equations_at(&b->equations, s->coeffs.params, work, further);
+    (void)pl_formulas_at(&b->formulas, s->coeffs.params, work);
 #if PL_SEGMENTS > 1
     rows = PL(block_size)(b);
     for (segment = s->segment; segment < PL_SEGMENTS - 1 && PL(until)(s, segment) < tau; segment++) {
         const real ahead = PL(until)(s, segment);
         if (ahead > done) {
-            PL(advance)(b, work, segment, rows, ahead - done, x, further);
+            PL(advance)(s, b, work, segment, rows, ahead - done, x, further);
             done = ahead;
         }
     }
 #endif
-    PL(advance)(b, work, segment, rows, tau - done, x, further);
+    PL(advance)(s, b, work, segment, rows, tau - done, x, further);
 }
 
 /* The state tau after now */

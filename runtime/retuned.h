@@ -8,18 +8,16 @@
  *     PL_PARAMS, PL_SIZE, PL_STATES      sizes; of x; states, which x begins with
  * PL_SWITCHING_FUNCTIONS, PL_BREAKS, PL_SEGMENTS     switching functions, breakpoints of all; segments of time of the
  * loads
- *     PL_BRANCHES, PL(slope_row)[]       linear systems that regions have; of each its first row of highest derivatives
- *                                        among the numbers, -1: it stays, -2: and so do all rows that it has bounds of
+ *     PL_BRANCHES, PL(system)[]          linear systems that regions have; of each A in x' = A x, no places: it stays
  *     PL(segment)[]                      of each, the segment of time it is of, where there are several
- *     PL_ROWS, PL_BLOCKS, PL_WIDE        numbers that params change, rows over x: PL(equations)[1 + PL_BLOCKS] give
- *     PL(block_row)[1 + PL_BLOCKS]       them, from this row on; those behind the first with their W's, of so many
- *                                        entries at most
+ *     PL_OPERATIONS, PL(formulas)        by which all numbers follow from params
+ *     PL_ROWS, PL(numbers)               rows over x that params change
+ *     PL_BOUNDS                          1: some of these are rows that systems have bounds of
  *     PL(check)[2 PL_CHECKS]             a number that may not have any value, and which: 0: at least 0, 1: at most 1,
  *                                        too, 2: above 0, 3: below 0
  *     PL_FROM, PL(from)[]                per row of an instance's tables where it is found among the numbers, from 1;
  *                                        below 0: with the other sign, 0: it stays. 0: all do
- *     PL_ENTRIES, PL(entry)[], PL_HIGHEST, PL(highest)[]     of x' = A x: what stays; rows of highest derivatives
- *     PL_WORK, PL_HALVINGS, PL_RUNGS     numbers of two words to work in; of pl_region_of: most; rungs
+ *     PL_HALVINGS, PL_RUNGS              of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
  * PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their rows,
  * what is held,
@@ -33,25 +31,6 @@
  *     PL(breaks)[]                       breakpoints of each switching function
  *     PL_LARGE, PL_FOLDED, PL_OPEN_END   what no number may pass; root of 2 less 1; of intervals without end */
 #include "numbers.h"
-
-/* ---- the numbers ---- */
-
-static int PL(numbers)(const real params[PL_PARAMS], pl_two *value, pl_two *work)
-{
-    int status = pl_equations_at(&PL(equations)[0], params, value, work);
-#if PL_BLOCKS > 0
-    pl_two wide[PL_WIDE];
-    int b, i;
-    for (b = 1; b <= PL_BLOCKS && status == 0; b++) {
-        const int rows = PL(equations)[b].rows, from = PL(block_row)[b] * PL_SIZE;
-        status = pl_equations_at(&PL(equations)[b], params, wide, work);
-        for (i = 0; i < rows * PL_SIZE && status == 0; i++) {
-            value[from + i] = wide[i / PL_SIZE * (PL_SIZE + rows) + i % PL_SIZE];
-        }
-    }
-#endif
-    return status;
-}
 
 #if PL_CHECKS > 0
 static int PL(out_of_range)(const pl_two *value)
@@ -151,27 +130,15 @@ static void PL(take_all)(PL(coeffs) *c, const pl_two *value)
 
 /* ---- matrices ---- */
 
-/* e^{A d} of one system, x' = A x, from its rows of highest derivatives */
-static int PL(matrices)(PL(coeffs) *c, int k, const pl_two *value, real h, pl_two *work)
+/* e^{A d} of one system */
+static int PL(matrices)(PL(coeffs) *c, int k, const real params[PL_PARAMS], const pl_two *made, real h)
 {
-    static const pl_two none = {0, 0};
-    pl_two A[PL_SIZE * PL_SIZE];
-    int i, j, status;
-    for (i = 0; i < PL_SIZE * PL_SIZE; i++) {
-        A[i] = none;
+    pl_two A[PL_SIZE * PL_SIZE], work[PL_REGION_WORK(PL_SIZE)];
+    int status = pl_entries_at(&PL(system)[k], &PL(formulas), params, made, A);
+    if (status == 0) {
+        status = pl_region_of(PL_SIZE, A, h, PL_HALVINGS, PL_RUNGS, &c->halvings[k], &c->spacing[k], c->slopes[k][0],
+                              c->pieces[k][0], c->rungs[PL(first_rung)[k]][0], work);
     }
-#if PL_ENTRIES > 0
-    for (i = 0; i < PL_ENTRIES; i++) {
-        A[PL(entry)[i].row * PL_SIZE + PL(entry)[i].column] = PL(entry)[i].value;
-    }
-#endif
-    for (i = 0; i < PL_HIGHEST; i++) {
-        for (j = 0; j < PL_SIZE; j++) {
-            A[PL(highest)[i] * PL_SIZE + j] = value[i * PL_SIZE + j];
-        }
-    }
-    status = pl_region_of(PL_SIZE, A, h, PL_HALVINGS, PL_RUNGS, &c->halvings[k], &c->spacing[k], c->slopes[k][0],
-                          c->pieces[k][0], c->rungs[PL(first_rung)[k]][0], work);
 #if PL_EVENT_FREE
     if (status == 0) {
         c->large[k] = pl_region_large(PL_SIZE, c->halvings[k], c->pieces[k][0], PL_LARGE);
@@ -315,13 +282,21 @@ static int PL(retune_all)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #endif
 {
-    PL(coeffs) made = PL(nominal);
-    pl_two value[PL_ROWS * PL_SIZE], work[PL_WORK];
+    PL(coeffs) fresh = PL(nominal);
+    pl_two made[PL_OPERATIONS + 1];
+#if PL_ROWS > 0
+    pl_two value[PL_ROWS * PL_SIZE];
+#endif
     int i, status;
     if (h != PL_H) {
         return PL_NO_STEP;
     }
-    status = PL(numbers)(params, value, work);
+    status = pl_formulas_at(&PL(formulas), params, made);
+#if PL_ROWS > 0
+    if (status == 0) {
+        status = pl_entries_at(&PL(numbers), &PL(formulas), params, made, value);
+    }
+#endif
 #if PL_CHECKS > 0
     if (status == 0 && PL(out_of_range)(value)) {
         status = PL_OUT_OF_RANGE;
@@ -331,27 +306,27 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
         return status;
     }
     for (i = 0; i < PL_PARAMS; i++) {
-        made.params[i] = params[i];
+        fresh.params[i] = params[i];
     }
 #if PL_FROM > 0
-    PL(take_all)(&made, value);
+    PL(take_all)(&fresh, value);
 #endif
     for (i = 0; i < PL_BRANCHES; i++) {
-        const int from = PL(slope_row)[i];
-        if (from >= 0) {
-            status = PL(matrices)(&made, i, value + from * PL_SIZE, h, work);
+        const int changes = PL(system)[i].places > 0;
+        if (changes) {
+            status = PL(matrices)(&fresh, i, params, made, h);
         }
         if (status != 0) {
             return status;
         }
-        if (from >= -1) {
-            PL(bound)(&made, i, h);
+        if (changes || PL_BOUNDS) {
+            PL(bound)(&fresh, i, h);
         }
     }
 #if PL_EVENT_FREE
-    PL(gather)(&made);
+    PL(gather)(&fresh);
 #endif
-    *c = made;
+    *c = fresh;
     return 0;
 }
 

@@ -14,6 +14,7 @@
 #undef PL_AT
 #undef PL_AT_BREAKPOINTS
 #undef PL_AT_ONCE
+#undef PL_OPERATIONS
 #undef PL_OPERATORS
 #undef PL_BARE
 #undef PL_BASE
@@ -59,7 +60,6 @@
 #undef PL_END
 #undef PL_ENDED
 #undef PL_ENTRIES
-#undef PL_EQUATIONS
 #undef PL_EVENT_COLUMNS
 #undef PL_EVENT_ORDER
 #undef PL_SWITCHING_FUNCTIONS
@@ -92,7 +92,6 @@
 #undef PL_HAS
 #undef PL_HERE
 #undef PL_HIDDEN
-#undef PL_HIGHEST
 #undef PL_HUGE
 #undef PL_IMPACTS
 #undef PL_INPUTS
@@ -150,7 +149,6 @@
 #undef PL_OUT
 #undef PL_OUTPUTS
 #undef PL_OUT_COLUMNS
-#undef PL_OUT_FIRST
 #undef PL_OVER
 #undef PL_OWN
 #undef PL_PAIRS
@@ -244,7 +242,6 @@
 #undef PL_WAYS
 #undef PL_FORCINGS
 #undef PL_WHOLE
-#undef PL_WIDE
 #undef PL_WIDTH
 #undef PL_WORK
 #undef PL_WORTH

@@ -84,6 +84,14 @@ static void text_held(FILE *to, const struct step *step)
 		growth_rate(step), readable_text(step->model->h));
 }
 
+static int tuned_entries(const struct tuning *t, int systems)
+{
+	int entries = t->all.entries;
+	for (int k = 0; k < systems; k++)
+		entries += t->system[k].entries;
+	return entries;
+}
+
 static void text_tuning(FILE *to, const struct step *step)
 {
 	const struct model *model = step->model;
@@ -91,19 +99,14 @@ static void text_tuning(FILE *to, const struct step *step)
 	fputs("Tunable on the target:", to);
 	for (int k = 0; k < t->given; k++)
 		fprintf(to, "%s %s = %s", k ? "," : "", t->param[k].symbol->name, readable_text(t->nominal[k]));
-	if (model->params.retuned)
-		fprintf(to, "; rows of regions that change with them have %d entries there%s.\n",
-			t->all.entries,
-			t->blocks ? format(", and %d sets of them are solved", t->blocks)
-					       : "");
-	else if (model->params.held && model->switching)
+	if (model->params.held && model->switching && !model->params.retuned)
 		fputs("; they act like held inputs.\n", to);
-	else if (model->params.held)
+	else if (model->params.held && !model->params.retuned)
 		fputs("; expressions read them there. Operators, orders and choices are those of these values.\n", to);
 	else
-		fprintf(to, "; the equations there have %d entr%s%s.\n", t->all.entries,
-			t->all.entries == 1 ? "y" : "ies",
-			t->all.solves ? ", and are solved for the highest derivatives" : "");
+		fprintf(to, "; %s there have %d entries.\n",
+			model->params.retuned ? "matrices and rows of regions that change with them" : "the equations",
+			tuned_entries(t, step->branches));
 	if (step->blocks && !step->blocks->solved)
 		fprintf(to, "They touch %d of %d independent blocks; %s.\n", step->blocks->touched, step->blocks->all,
 			step->blocks->full ? "another h does, too" : "the others have tables, of this h");

@@ -4,10 +4,10 @@
  *
  *     equations [-n RANDOM] [-s SEED] [-v] MODEL.spec ...
  *
- * At random rational values the sums of products give a row over states, loads and inputs for each highest derivative;
- * put into the equations M q'' + C q' + K q = loads + inputs of the model that -D makes with these values, it has to
- * fulfil them, and rows of outputs have to be equal. Nothing is rounded.  Random specs write their factors with nested
- * params, matrices, lets and sketches; none may be refused.
+ * At random rational values the record gives A in x' = A x, x the states, load states and inputs; its rows of highest
+ * derivatives put into the equations M q'' + C q' + K q = loads + inputs of the model that -D makes with these values,
+ * they have to fulfil them, and rows of outputs have to be equal. Nothing is rounded.  Random specs write their factors
+ * with nested params, matrices, lets and sketches; none may be refused.
  */
 #include "algebra.h"
 #include "cases.h"
@@ -134,11 +134,11 @@ static void part_at(const struct traced_part *part, mpq_t *value, mpq_ptr result
         mpq_neg(result, result);
 }
 
-/* [R | W] at these values, rows x (columns + rows); without W the unit matrix stands there. NULL: a divisor is 0 */
+/* A at these values, then the rows of outputs. NULL: a divisor is 0 */
 static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
 {
-    const int width = t->x.size + t->all.rows;
-    mpq_t *number = rationals((size_t)t->numbers + 1), *value = rationals((size_t)(t->all.rows * width)), a, b;
+    const int size = t->x.size;
+    mpq_t *number = rationals((size_t)t->numbers + 1), *value = rationals((size_t)((size + t->all.rows) * size)), a, b;
     mpq_inits(a, b, NULL);
     bool *divided = ARRAY(bool, (size_t)t->numbers + 1);    /* by 0, or made of what is */
     for (int i = 0; i < t->numbers; i++) {
@@ -154,51 +154,25 @@ static mpq_t *rows_at(const struct tuning *t, const mpq_t *values)
         if (!divided[i])
             (n->op == TRACED_SUM ? mpq_add : n->op == TRACED_PRODUCT ? mpq_mul : mpq_div)(number[i], a, b);
     }
-    for (int i = 0; i < t->all.rows && !t->all.solves; i++)
-        mpq_set_ui(value[i * width + t->x.size + i], 1, 1);
-    for (const struct tuned_entry *entry = t->all.entry; entry < t->all.entry + t->all.entries; entry++) {
-        if (entry->value.number >= 0 && divided[entry->value.number])
-            return NULL;
-        part_at(&entry->value, number, value[entry->row * width + entry->column]);
-    }
-    return value;
-}
-
-/* W^-1 R by Gauss and Jordan; false: singular */
-static bool solve(const struct tuning *t, mpq_t *value)
-{
-    const int width = t->x.size + t->all.rows;
-    mpq_t factor;
-    mpq_init(factor);
-    for (int k = 0; k < t->all.rows; k++) {
-        int pivot = k;
-        while (pivot < t->all.rows && mpq_sgn(value[pivot * width + t->x.size + k]) == 0)
-            pivot++;
-        if (pivot == t->all.rows)
-            return false;
-        for (int j = 0; j < width; j++)
-            mpq_swap(value[pivot * width + j], value[k * width + j]);
-        mpq_inv(factor, value[k * width + t->x.size + k]);
-        for (int j = 0; j < width; j++)
-            mpq_mul(value[k * width + j], value[k * width + j], factor);
-        for (int i = 0; i < t->all.rows; i++) {
-            mpq_neg(factor, value[i * width + t->x.size + k]);
-            for (int j = 0; i != k && j < width; j++)
-                add_product(value[i * width + j], factor, value[k * width + j], false);
+    const struct tuned_equations *of[] = { t->system, &t->all };
+    for (int k = 0; k < 2; k++)
+        for (const struct tuned_entry *entry = of[k]->entry; entry < of[k]->entry + of[k]->entries; entry++) {
+            if (entry->value.number >= 0 && divided[entry->value.number])
+                return NULL;
+            part_at(&entry->value, number, value[(k * size + entry->row) * size + entry->column]);
         }
-    }
-    return true;
+    return value;
 }
 
 /* Left side of equation i in a column, highest derivatives from `value`; and its right side */
 static void sides(const struct linear *system, const struct tuning *t, const mpq_t *value, int i, int column,
                   mpq_ptr left)
 {
-    const int width = t->x.size + t->all.rows, n = system->n;
+    const int n = system->n;
     mpq_set_ui(left, 0, 1);
     for (int j = 0; j < n; j++)
-        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j], value[j * width + column],
-                    false);
+        add_product(left, (system->velocity[j] >= 0 ? system->M : system->C)[i * n + j],
+                    value[highest_state(system, j) * t->x.size + column], false);
     if (column < system->states)
         mpq_add(left, left, (column < n ? system->K : system->C)[i * n + system->coord[column]]);
 }
@@ -230,7 +204,7 @@ static mpq_srcptr force_at(const struct linear *system, int column, int i, const
 static void compare_model(const struct model *there, const struct tuning *t, const mpq_t *value)
 {
     const struct linear *system = &there->system;
-    const int width = t->x.size + t->all.rows;
+    const int size = t->x.size;
     mpq_t left, zero;
     mpq_inits(left, zero, NULL);
     for (int i = 0; i < system->n; i++)
@@ -239,11 +213,12 @@ static void compare_model(const struct model *there, const struct tuning *t, con
             compare(left, j < system->states ? zero : force_at(system, j, i, NULL), "equation", i, j);
         }
     for (int l = 0; l < system->loads; l++)
-        if (t->frequency[l] >= 0)
-            compare(value[t->frequency[l] * width], system->load[l].forcing->w, "frequency of load", l, 0);
+        if (t->frequency[l])
+            compare(value[(t->x.load[l] + 1) * size + t->x.load[l]], system->load[l].forcing->w, "frequency of load", l,
+                    0);
     for (int o = 0; o < there->outputs; o++)
         for (int j = 0; j < t->x.size && t->output[o] >= 0; j++)
-            compare(value[t->output[o] * width + j],
+            compare(value[(size + t->output[o]) * size + j],
                     j < system->states ? there->output[o].state[j] : force_at(system, j, 0, &there->output[o]),
                     there->output[o].name, o, j);
 }
@@ -262,7 +237,7 @@ static void compare_fixed(const struct model *a, const struct model *b, const st
 static bool turned(const struct model *model, const struct tuning *t, const mpq_t *value)
 {
     for (int l = 0; l < model->system.loads; l++)
-        if (t->frequency[l] >= 0 && mpq_sgn(value[t->frequency[l] * (t->x.size + t->all.rows)]) <= 0)
+        if (t->frequency[l] && mpq_sgn(value[(t->x.load[l] + 1) * t->x.size + t->x.load[l]]) <= 0)
             return true;
     return false;
 }
@@ -287,8 +262,8 @@ static int try_text(const char *text)
         for (int k = t->given; k < t->params; k++)
             param_value(there->spec->tunable[k].symbol, values[k]);
         mpq_t *value = rows_at(t, (const mpq_t *)values);
-        if (!value || !solve(t, value))
-            complain("singular, but the model there is none");
+        if (!value)
+            complain("a divisor is 0, but the model there is none");
         else if (there->system.loads == model->system.loads && !turned(model, t, (const mpq_t *)value))
             compare_model(there, t, (const mpq_t *)value);
         compare_fixed(model, there, t);

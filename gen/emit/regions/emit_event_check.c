@@ -73,7 +73,7 @@ static bool changes(const struct emitter *e, int branch)
 	bool any = false;
 	for (int k = 0; k < e->step->branches; k++)
 		if (branch < 0 || k == branch)
-			any = any || retuned_place(e->model->params.retuned, RETUNED_SLOPE, k, 0) >= 0;
+			any = any || e->model->params.retuned->system[k].entries > 0;
 	return any;
 }
 

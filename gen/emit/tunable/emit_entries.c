@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How entries of equations follow from tunable params: what was recorded of them, as operations that the target carries
- * out in two words, those of each of the equations by themselves. */
+ * out in two words. */
 #include "inner.h"
 #include "model/tunable/tuning.h"
-#include "step/tunable/tuned.h"
 
 static const char *two_words(struct coefficient number)
 {
@@ -21,17 +20,6 @@ static void close_array(const struct emitter *e)
 	say(e, "\n};\n");
 }
 
-void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed)
-{
-	if (count == 0)
-		return;
-	say(e, "\nstatic const pl_entry $n_entry[%d] = {"
-	       "  /* entries of A that no param changes: row, column, value */", count);
-	for (int i = 0; i < count; i++)
-		say(e, "%s{%d, %d, %s}", next_value(i), fixed[i].row, fixed[i].column, two_words(fixed[i].value));
-	close_array(e);
-}
-
 /* ---- what is carried out ---- */
 
 struct operation { const char *what; int a, b; };
@@ -46,7 +34,7 @@ struct entries {                    /* of all equations, one after the other */
 	mpq_srcptr *constant;
 	struct operation *operation;
 	struct landing *place;
-	struct made *made;          /* of the equations at hand */
+	struct made *made;          /* by the operations at hand */
 };
 
 static int constant_of(struct entries *x, mpq_srcptr value)
@@ -68,7 +56,7 @@ static void list_constant(struct entries *x, const struct traced_part *part)
 static void list_constants(struct entries *x, const struct tuned_equations *all)
 {
 	const struct tuning *t = x->tuning;
-	SCRATCH bool *live = numbers_behind(t, all);
+	SCRATCH bool *live = numbers_behind(t, 1, &all);
 	for (int i = 0; i < all->entries; i++)
 		list_constant(x, &all->entry[i].value);
 	for (int i = 0; i < t->numbers; i++)
@@ -85,7 +73,7 @@ static struct made made_of(struct entries *x, const struct traced_part *part)
 	return (struct made){ m.number, m.negative != part->negative };
 }
 
-/* first: of the equations at hand */
+/* first: of the operations at hand */
 static struct made operate(struct entries *x, const struct traced *n, int first)
 {
 	const struct made a = made_of(x, &n->a), b = made_of(x, &n->b);
@@ -100,17 +88,21 @@ static struct made operate(struct entries *x, const struct traced *n, int first)
 	return (struct made){ number, sum ? a.negative && b.negative : differ };
 }
 
-static void take_equations(struct entries *x, const struct tuned_equations *all)
+static void take_operations(struct entries *x, int count, const struct tuned_equations *const *list)
 {
 	const struct tuning *t = x->tuning;
 	const int first = x->operations;
-	SCRATCH bool *live = numbers_behind(t, all);
+	SCRATCH bool *live = numbers_behind(t, count, list);
 	for (int i = 0; i < t->numbers; i++) {
 		const struct traced *n = &t->number[i];
 		if (live[i])
 			x->made[i] = n->op == TRACED_GIVEN ? (struct made){ n->a.number, n->a.negative }
 							   : operate(x, n, first);
 	}
+}
+
+static void take_places(struct entries *x, const struct tuned_equations *all)
+{
 	for (int i = 0; i < all->entries; i++) {
 		const struct made m = made_of(x, &all->entry[i].value);
 		*MORE(x->place, x->places) = (struct landing){ all->entry[i].row, all->entry[i].column, m };
@@ -158,23 +150,33 @@ static const char *from(const struct emitter *e, const char *table, int first, i
 	return last > first ? format("%s_%s + %d", e->name, table, first) : "NULL";
 }
 
-const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
-			    const struct tuned_equations *const *list)
+static const char *formulas_text(const struct emitter *e, const struct entries *x, int first)
+{
+	return format("{%d, %d, %d, %s, %s}", x->tuning->params, x->constants, x->operations - first,
+		      from(e, "constant", 0, x->constants), from(e, "operation", first, x->operations));
+}
+
+static const char *entries_text(const struct emitter *e, struct entries *x, const struct tuned_equations *all)
+{
+	const int first = x->places;
+	take_places(x, all);
+	return format("{%d, %d, %d, %s}", all->rows, all->columns, x->places - first,
+		      from(e, "entries", first, x->places));
+}
+
+void emit_equations(const struct emitter *e, const struct tuning *t, bool together, int count,
+		    const struct tuned_equations *const *list, struct equations_text *text)
 {
 	struct entries x = { .tuning = t, .made = ARRAY(struct made, (size_t)t->numbers + 1) };
-	const char **text = ARRAY(const char *, (size_t)count);
 	for (int k = 0; k < count; k++)
 		list_constants(&x, list[k]);    /* they come before what is made */
 	for (int k = 0; k < count; k++) {
-		const int operations = x.operations, places = x.places;
-		take_equations(&x, list[k]);
-		text[k] = format("{%d, %d, %d, %d, %d, %d, %d, %s, %s, %s}", list[k]->rows, list[k]->columns,
-				 list[k]->solves, t->params, x.constants, x.operations - operations,
-				 x.places - places, from(e, "constant", 0, x.constants),
-				 from(e, "operation", operations, x.operations), from(e, "entries", places, x.places));
+		const int first = x.operations;
+		if (k == 0 || !together)
+			take_operations(&x, together ? count : 1, list + k);
+		text[k] = (struct equations_text){ formulas_text(e, &x, first), entries_text(e, &x, list[k]) };
 	}
 	emit_constants(e, &x);
 	emit_operations(e, &x);
 	emit_places(e, &x);
-	return text;
 }

@@ -6,7 +6,6 @@
 #include "step/regions/regions.h"
 #include "model/contacts/contacts.h"
 #include "step/regions/guards.h"
-#include "step/tunable/tuned.h"
 
 static const struct tuning *retuned_of(const struct emitter *e)
 {
@@ -26,45 +25,31 @@ static struct guards own_guards(const struct emitter *e)
 
 /* ---- the equations ---- */
 
-/* All rows but what the target solves for, and behind it that, block by block */
-static void emit_numbers(const struct emitter *e)
+static const struct tuned_equations **list_equations(const struct emitter *e)
+{
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)e->step->branches + 1);
+	list[0] = &retuned_of(e)->all;
+	for (int k = 0; k < e->step->branches; k++)
+		list[k + 1] = &retuned_of(e)->system[k];
+	return list;
+}
+
+/* Of the numbers, then of each system, all by the same formulas; how many these are */
+static int emit_numbers(const struct emitter *e)
 {
 	const struct tuning *r = retuned_of(e);
-	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)r->blocks + 1);
-	int *row = ARRAY(int, (size_t)r->blocks + 1);
-	list[0] = &r->all;
-	for (int b = 0; b < r->blocks; b++) {
-		list[b + 1] = &r->block[b].all;
-		row[b + 1] = r->block[b].place;
-	}
-	const char **text = emit_equations(e, r, r->blocks + 1, list);
-	say(e, "\nstatic const pl_equations $n_equations[%d] = {\n", r->blocks + 1);
-	for (int b = 0; b <= r->blocks; b++)
-		say(e, "    %s,\n", text[b]);
+	const int systems = e->step->branches;
+	SCRATCH const struct tuned_equations **list = list_equations(e);
+	struct equations_text *text = ARRAY(struct equations_text, (size_t)systems + 1);
+	emit_equations(e, r, true, systems + 1, list, text);
+	say(e, "\nstatic const pl_formulas $n_formulas = %s;\n", text[0].formulas);
+	if (r->all.rows)
+		say(e, "static const pl_entries $n_numbers = %s;\n", text[0].entries);
+	say(e, "static const pl_entries $n_system[%d] = {\n", systems);
+	for (int k = 1; k <= systems; k++)
+		say(e, "    %s,\n", text[k].entries);
 	say(e, "};\n");
-	if (r->blocks)
-		emit_integers(e, "short", "block_row", r->blocks + 1, row);
-}
-
-static int most_work(const struct emitter *e)
-{
-	const struct tuning *r = retuned_of(e);
-	int most = PL_REGION_WORK(e->step->layout.size);
-	most = r->all.operations > most ? r->all.operations : most;
-	for (int b = 0; b < r->blocks; b++)
-		most = r->block[b].all.operations > most ? r->block[b].all.operations : most;
-	return most;
-}
-
-static int widest_block(const struct emitter *e)
-{
-	const struct tuning *r = retuned_of(e);
-	int most = 0;
-	for (int b = 0; b < r->blocks; b++) {
-		const int cells = r->block[b].all.rows * width_of_equations(&r->block[b].all);
-		most = cells > most ? cells : most;
-	}
-	return most;
+	return operations_behind(r, systems + 1, list);
 }
 
 /* ---- which of them go where ---- */
@@ -178,27 +163,6 @@ static bool rows_change(const struct emitter *e)
 	return change;
 }
 
-/* Of each linear system; what of x' = A x is highest derivatives, and what no param changes: how many of that */
-static int emit_systems(const struct emitter *e)
-{
-	const struct linear *system = e->system;
-	int *first = ARRAY(int, (size_t)e->step->branches), *highest = ARRAY(int, (size_t)system->n);
-	struct fixed_slope *entry;
-	const int entries = fixed_slopes(e->step, &entry), stays = rows_change(e) ? -1 : -2;
-	for (int k = 0; k < e->step->branches; k++) {
-		const int place = retuned_place(retuned_of(e), RETUNED_SLOPE, k, 0);
-		first[k] = place >= 0 ? place : stays;
-	}
-	for (int i = 0; i < system->n; i++)
-		highest[i] = highest_state(system, i);
-	emit_integers(e, "short", "slope_row", e->step->branches, first);
-	emit_integers(e, "short", "highest", system->n, highest);
-	if (e->model->switching->segments > 1)
-		emit_integers(e, "short", "segment", e->step->branches, e->model->switching->system_segment);
-	emit_entries(e, entries, entry);
-	return entries;
-}
-
 static int emit_bounded(const struct emitter *e)
 {
 	struct list l = { 0 };
@@ -239,20 +203,19 @@ void emit_retuned(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
-	emit_numbers(e);
-	const int taken = emit_from(e, &g);
+	const int operations = emit_numbers(e), taken = emit_from(e, &g);
 	if (has_guards(e))
 		emit_integers(e, "short", "guard_branch", g.rows, g.branch);
-	const int checks = emit_checks(e), entries = emit_systems(e);
-	const int bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
+	if (s->segments > 1)
+		emit_integers(e, "short", "segment", e->step->branches, s->system_segment);
+	const int checks = emit_checks(e), bounded = has_guards(e) && taken ? emit_bounded(e) : 0;
 	emit_sizes(e, "retuned.h", { "PARAMS", e->model->params.held->params }, { "WRAPPED", wraps_retune(e) },
 		   { "SIZE", e->step->layout.size },
 		   { "STATES", e->system->states }, { "SWITCHING_FUNCTIONS", s->functions },
 		   { "BREAKS", breaks_of_all(s) },
 		   { "SEGMENTS", s->segments }, { "BRANCHES", e->step->branches },
-		   { "ROWS", retuned_of(e)->all.rows }, { "BLOCKS", retuned_of(e)->blocks },
-		   { "WIDE", widest_block(e) }, { "FROM", taken }, { "CHECKS", checks }, { "ENTRIES", entries },
-		   { "HIGHEST", e->system->n }, { "WORK", most_work(e) },
+		   { "ROWS", retuned_of(e)->all.rows }, { "OPERATIONS", operations },
+		   { "FROM", taken }, { "CHECKS", checks }, { "BOUNDS", rows_change(e) },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
@@ -272,6 +235,8 @@ int retuned_numbers(const struct emitter *e)
 int retuned_kilobytes(const struct emitter *e)
 {
 	int size = e->step->layout.size, cells = size * size, real = e->model->request.single ? 4 : 8;
-	int twos = retuned_of(e)->all.rows * size + 8 * cells + widest_block(e);
+	SCRATCH const struct tuned_equations **list = list_equations(e);
+	int twos = operations_behind(retuned_of(e), e->step->branches + 1, list) + retuned_of(e)->all.rows * size +
+		   8 * cells;
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }

@@ -45,7 +45,7 @@ static void emit_outputs(const struct emitter *e)
 	const char **name = ARRAY(const char *, (size_t)t->outputs);
 	for (int o = 0; o < e->model->outputs; o++)
 		if (t->output[o] >= 0)
-			name[t->output[o] - e->model->n] = e->model->output[o].name;
+			name[t->output[o]] = e->model->output[o].name;
 	open_member(e, "double", "out", format("[%d][%d]", t->outputs, t->x.size),
 		    format("out z, where outputs depend on params%s",
 			   e->ramps ? "; of a ramp its value and its slope" : ""));
@@ -107,25 +107,21 @@ void emit_tuned_members(const struct emitter *e)
 
 /* ---- the equations on the target ---- */
 
-/* Outputs and frequencies that the equations of no block have */
-static bool has_others(const struct emitter *e)
-{
-	return !blocks_of_step(e)->solved && blocks_of_step(e)->others.all.rows > 0;
-}
-
-/* Of the blocks, then, where there are some, of what belongs to none */
-static const char **emit_all_equations(const struct emitter *e)
+/* Of the blocks, then of others; of one block both follow from params by its formulas */
+static struct equations_text *emit_all_equations(const struct emitter *e)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
-	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)p->blocks + 1);
+	SCRATCH const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)p->blocks + 1);
+	struct equations_text *text = ARRAY(struct equations_text, (size_t)p->blocks + 1);
 	for (int b = 0; b < p->blocks; b++)
-		list[b] = &p->block[b].part.all;
-	list[p->blocks] = &p->others.all;
-	return emit_equations(e, e->model->params.tuning, p->blocks + has_others(e), list);
+		list[b] = &p->block[b].A;
+	list[p->blocks] = &p->others;
+	emit_equations(e, e->model->params.tuning, p->solved, p->blocks + 1, list, text);
+	return text;
 }
 
-/* What blocks and groups of them say by lists: places of rows of A, turning loads, x in that of the whole, inputs with
- * further samples; factors of blocks alike; parts of derivatives in samples */
+/* What blocks and groups of them say by lists: places of x in that of the whole, inputs with further samples; factors
+ * of blocks alike; parts of derivatives in samples */
 struct lists {
 	int count, *place;
 };
@@ -155,17 +151,6 @@ static const char *list_text(const struct emitter *e, int count, int first)
 	return count ? format("%s_places + %d", e->name, first) : "NULL";
 }
 
-static void emit_all_entries(const struct emitter *e)
-{
-	const struct tuned_blocks *p = blocks_of_step(e);
-	struct fixed_slope *all = NULL;
-	int count = 0;
-	for (int b = 0; b < p->blocks; b++)
-		for (int i = 0; i < p->block[b].slopes; i++)
-			*MORE(all, count) = p->block[b].slope[i];
-	emit_entries(e, count, all);
-}
-
 static void emit_lists(const struct emitter *e, const struct listed *l)
 {
 	if (l->place.count)
@@ -177,16 +162,13 @@ static void emit_lists(const struct emitter *e, const struct listed *l)
 }
 
 static const char *block_text(const struct emitter *e, const struct tuned_block *b, struct lists *l,
-			      const char *equations, int entry)
+			      const struct equations_text *text)
 {
 	const struct group *g = b->group;
-	const char *rows = list_text(e, b->derivatives, add_places(l, b->derivatives, b->place));
-	const char *turns = list_text(e, b->turns, add_places(l, 2 * b->turns, b->turn));
 	const bool placed = e->step->series.emitted && !blocks_of_step(e)->solved;
 	const char *places = placed ? list_text(e, 1, add_places(l, b->size, b->from)) : "NULL";
-	return format("{%s,\n     %d, %d, %d, %d, %d, %d, %d, %s, %s, %s, %s}", equations,
-		      g->states, g->loads, g->inputs, e->system->segments, b->derivatives, b->slopes, b->turns, rows,
-		      b->slopes ? format("%s_entry + %d", e->name, entry) : "NULL", turns, places);
+	return format("{%s, %s,\n     %d, %d, %d, %d, %s}", text->formulas, text->entries, g->states, g->loads,
+		      g->inputs, e->system->segments, places);
 }
 
 static void emit_blocks(const struct emitter *e, const char *const *text)
@@ -271,22 +253,21 @@ static void emit_reads(const struct emitter *e)
 	const struct tuned_blocks *p = blocks_of_step(e);
 	int *reads = ARRAY(int, (size_t)p->blocks);
 	for (int b = 0; b < p->blocks; b++)
-		reads[b] = (int)p->block[b].part.params;
+		reads[b] = (int)p->block[b].params;
 	emit_integers(e, "unsigned short", "reads", p->blocks, reads);
 }
 
-static void emit_block_tables(const struct emitter *e, const char *const *equations)
+static void emit_block_tables(const struct emitter *e, const struct equations_text *text)
 {
 	const struct tuned_blocks *p = blocks_of_step(e);
 	const char **block = ARRAY(const char *, (size_t)p->blocks), **group = ARRAY(const char *, (size_t)p->blocks);
 	struct listed lists = { 0 };
-	int entry = 0, groups = 0;
-	for (int b = 0; b < p->blocks; entry += p->block[b++].slopes)
-		block[b] = block_text(e, &p->block[b], &lists.place, equations[b], entry);
+	int groups = 0;
+	for (int b = 0; b < p->blocks; b++)
+		block[b] = block_text(e, &p->block[b], &lists.place, &text[b]);
 	for (int b = 0; b < p->blocks; b += p->block[b].group->blocks)
 		if (p->block[b].group->tuned)
 			group[groups++] = group_text(e, &p->block[b], &lists);
-	emit_all_entries(e);
 	emit_lists(e, &lists);
 	if (p->blocks)
 		emit_blocks(e, block);
@@ -298,20 +279,19 @@ static void emit_block_tables(const struct emitter *e, const char *const *equati
 
 /* ---- beside the blocks ---- */
 
-static void emit_others(const struct emitter *e, const char *equations)
+static void emit_others(const struct emitter *e, const struct equations_text *text)
 {
 	const struct tuning *t = e->model->params.tuning;
-	const struct tuned_blocks *p = blocks_of_step(e);
-	say(e, "\n/* %s%s */\n"
-	       "static const pl_equations $n_equations = %s;\n",
-	    !t->outputs         ? "Frequencies of loads"
-	    : p->first_output   ? "Derivatives that outputs read, and outputs, over x"
-				: "Outputs, over x",
-	    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "",
-	    equations);
+	if (!blocks_of_step(e)->solved)
+		say(e, "\nstatic const pl_formulas $n_formulas = %s;\n", text->formulas);
+	if (blocks_of_step(e)->others.rows)
+		say(e, "\n/* %s%s */\n"
+		       "static const pl_entries $n_others = %s;\n",
+		    !t->outputs ? "Frequencies of loads" : "Outputs, over x",
+		    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "", text->entries);
 }
 
-/* By phases: which row of the equations its frequency is; by growths: whether a load decays */
+/* By phases: which entry of the equations its frequency is; by growths: whether a load decays */
 static void emit_rows_of_loads(const struct emitter *e)
 {
 	const int loads = e->system->loads;
@@ -323,7 +303,7 @@ static void emit_rows_of_loads(const struct emitter *e)
 			decays[e->growth[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
 	}
 	if (e->model->params.tuning->frequencies)
-		emit_integers(e, "short", "rate_row", e->phases, row);
+		emit_integers(e, "short", "rate_entry", e->phases, row);
 	if (e->growths && blocks_of_step(e)->full)
 		emit_integers(e, "unsigned char", "decays", e->growths, decays);
 }
@@ -356,9 +336,9 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		   { "SEGMENTS", e->system->segments }, { "ANY_STEP", p->full },
 		   { "DIRECT", e->step->form == FORM_DIRECT }, { "SAMPLES", most_derivatives(e) },
 		   { "WHOLE", has_kind(e, false) }, { "LISTED", has_kind(e, true) }, { "KEEPS", !p->solved },
-		   { "ROWS", p->others.all.rows }, { "WIDTH", width_of_equations(&p->others.all) },
+		   { "ROWS", p->others.rows }, { "OPERATIONS", p->operations },
 		   { "SOLVED", p->solved },
-		   { "OUT", t->outputs }, { "OUT_FIRST", p->first_output }, { "OUT_COLUMNS", t->x.size },
+		   { "OUT", t->outputs }, { "OUT_COLUMNS", t->x.size },
 		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
 		   { "PEAKS", has_peak_rows(e) ? peak_outputs(e->model) : 0 },
 		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
@@ -375,27 +355,26 @@ static void emit_group_call(const struct emitter *e, const struct tuned_block *f
 	const char *to = shape.rows ? format("c->%s[0]", tuned_table(e, first)) : "NULL";
 	const char *apart = shape.changing ? format("c->loads%d[0][0]", first->index) : "NULL";
 	say(e, "    if (status == 0) {\n"
-	       "        status = $n_retune_group(&$n_block_group[%d], params, h, value, %s, %s, work);\n"
+	       "        status = $n_retune_group(&$n_block_group[%d], params, h, made, %s, %s, work);\n"
 	       "    }\n",
 	    number, to, apart);
 }
 
 void emit_retune(const struct emitter *e)
 {
-	const char **equations = emit_all_equations(e);
-	emit_block_tables(e, equations);
-	if (has_others(e))
-		emit_others(e, equations[blocks_of_step(e)->blocks]);
+	const struct equations_text *text = emit_all_equations(e);
+	emit_block_tables(e, text);
+	emit_others(e, &text[blocks_of_step(e)->blocks]);
 	emit_rows_of_loads(e);
 	if (e->step->series.emitted)
 		emit_vector_now(e);
-	say(e, blocks_of_step(e)->solved ? "\n#define PL_EQUATIONS $n_block[0].equations\n"
-					 : "\n#define PL_EQUATIONS $n_equations\n");
+	say(e, blocks_of_step(e)->solved ? "\n#define PL_FORMULAS $n_block[0].formulas\n"
+					 : "\n#define PL_FORMULAS $n_formulas\n");
 	emit_sizes_of_tuning(e);
 	say(e, "#include \"retune.h\"\n");
 	if (!has_kind(e, false) && !has_kind(e, true))
 		return;
-	say(e, "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *value, "
+	say(e, "\nstatic int $n_retune_groups($n_coeffs *c, const double *params, double h, const pl_two *made, "
 	       "pl_two *work)\n"
 	       "{\n"
 	       "    int status = 0;\n");

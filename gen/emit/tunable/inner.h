@@ -5,7 +5,6 @@
 
 #include "tunable.h"
 
-struct fixed_slope;
 struct tuned_equations;
 
 /* ---- emit_tuned_blocks.c: linear models with tunable params ---- */
@@ -14,10 +13,10 @@ void emit_tuned_members(const struct emitter *e);                 /* of NAME_coe
 
 /* ---- emit_entries.c: how entries follow from params ---- */
 
-void emit_entries(const struct emitter *e, int count, const struct fixed_slope *fixed);
-/* Operations by which all of the list follow from params; of each what a pl_equations has */
-const char **emit_equations(const struct emitter *e, const struct tuning *t, int count,
-			    const struct tuned_equations *const *list);
+struct equations_text { const char *formulas, *entries; };         /* what pl_formulas and pl_entries have */
+/* together: all follow from params by the formulas of the first; else each by its own */
+void emit_equations(const struct emitter *e, const struct tuning *t, bool together, int count,
+		    const struct tuned_equations *const *list, struct equations_text *text);
 
 /* ---- emit_retuned.c: regions whose matrices tunable params change ---- */
 

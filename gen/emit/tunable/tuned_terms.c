@@ -54,7 +54,7 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 	case TABLE_LEFT:   return format("left[%d]", i);
 	case TABLE_SEEN:   return spell(e, "$n_dot($n_seen[%d], s->y)", i);
 	case TABLE_OWN_OUT:
-		return own_entry(e, "out", i / x->size - e->model->n, i % x->size, e->system->states, x->loads);
+		return own_entry(e, "out", i / x->size, i % x->size, e->system->states, x->loads);
 	default: return own_factor(e, i / width, i % width);
 	}
 }
@@ -66,5 +66,5 @@ bool is_tuned_output(const struct emitter *e, const struct output *output)
 
 const char *tuned_output_row(const struct emitter *e, const struct output *output)
 {
-	return format("out[%d]", own_row(e->step, output) - e->model->n);
+	return format("out[%d]", own_row(e->step, output));
 }

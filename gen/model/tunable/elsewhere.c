@@ -157,30 +157,17 @@ bool entry_stays(const struct elsewhere *s, ptrdiff_t index)
 
 /* ---- entries ---- */
 
-static struct traced_part *new_entry(struct tuned_equations *all, int row, int column)
-{
-	struct tuned_entry *entry = MORE(all->entry, all->entries);
-	*entry = (struct tuned_entry){ .row = row, .column = column, .value = traced_constant(1) };
-	return &entry->value;
-}
-
-void add_tuned_unit(struct tuned_equations *all, int row, int column)
-{
-	new_entry(all, row, column);
-}
-
 void add_tuned_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column)
 {
 	mpq_srcptr here = entry_seen(s, 0, index), there = entry_seen(s, 1, index);
 	if (mpq_sgn(here) == 0 && mpq_sgn(there) == 0)
 		return;
-	struct traced_part *value = new_entry(all, row, column);
-	value->negative = mpq_sgn(here) < 0;
-	value->number = traced_as(here, there);
-	if (value->number < 0 && !entry_stays(s, index))
+	const int number = traced_as(here, there);
+	if (number < 0 && !entry_stays(s, index))
 		error(s->tuning->param[0].at, NULL,
 		      "the equations depend on tunable params in a way that cannot be recomputed on the target");
 	mpq_t *size = rationals(1);
 	mpq_abs(*size, here);
-	value->constant = *size;
+	*MORE(all->entry, all->entries) =
+		(struct tuned_entry){ .row = row, .column = column, .value = { number, mpq_sgn(here) < 0, *size } };
 }

@@ -132,17 +132,18 @@ static bool entries_agree(const struct elsewhere *s, ptrdiff_t a, ptrdiff_t b)
 	return same;
 }
 
+/* Their rows come first, x.size of each. */
 static bool systems_agree(const struct elsewhere *s, int a, int b)
 {
 	const struct switching *w = s->model->switching;
-	const int n = s->model->n, size = s->tuning->x.size;
+	const ptrdiff_t cells = (ptrdiff_t)s->tuning->x.size * s->tuning->x.size;
 	bool same = w->system_segment[a] == w->system_segment[b];
-	for (int j = 0; j < n * size && same; j++)
-		same = entries_agree(s, index_of(s, a * n, j), index_of(s, b * n, j));
+	for (ptrdiff_t j = 0; j < cells && same; j++)
+		same = entries_agree(s, a * cells + j, b * cells + j);
 	return same;
 }
 
-/* Systems that are equal for all values are one. They come first among the rows, n of each. */
+/* Systems that are equal for all values are one. */
 static void merge_systems(struct elsewhere *s)
 {
 	struct switching *w = s->model->switching;
@@ -163,135 +164,57 @@ static void merge_systems(struct elsewhere *s)
 		if (w->region[r].possible)
 			w->region[r].system = number[w->region[r].system];
 	for (int i = 0; i < s->tuning->rows; i++)
-		if (row[i].kind <= RETUNED_W)
+		if (row[i].kind == RETUNED_SYSTEM)
 			row[i].of = merged[row[i].of] == row[i].of ? number[row[i].of] : -1;
 	w->systems = kept;
 }
 
 /* ---- entries ---- */
 
-/* Row `row` of the numbers as row `to` from column `from` on, up to `columns` of them */
-static void take_row(struct elsewhere *s, struct tuned_equations *all, int row, int to, int from, int columns)
+static void take_row(struct elsewhere *s, struct tuned_equations *all, int row)
 {
-	for (int j = 0; j < columns; j++)
-		add_tuned_entry(s, index_of(s, row, j), all, to, from + j);
-}
-
-/* Is the row one of a system: its slopes, and what reads them? */
-static bool is_of_system(const struct elsewhere *s, int row, int system)
-{
-	const struct retuned_row *r = &s->tuning->row[row];
-	switch (r->kind) {
-	case RETUNED_SLOPE: return r->of == system;
-	case RETUNED_OUTPUT:
-	case RETUNED_FREQUENCY: return row_changes(s, row);
-	case RETUNED_RELEASE:
-	case RETUNED_FRICTION: return s->model->switching->region[r->of].system == system;
-	default: return false;
-	}
-}
-
-/* Slopes have theirs elsewhere, frequencies none; of others they follow */
-static int row_apart(const struct elsewhere *s, int row, bool W)
-{
-	const struct retuned_row *all = s->tuning->row, *of = &all[row];
-	if (of->kind != RETUNED_SLOPE)
-		return of->kind == RETUNED_FREQUENCY ? row : row + (W ? 1 : 2);
-	int i = 0;
-	while (all[i].kind != (W ? RETUNED_W : RETUNED_R) || all[i].of != of->of || all[i].index != of->index)
-		i++;
-	return i;
-}
-
-static struct tuned_equations *new_block(struct tuning *t)
-{
-	struct retuned_block *block = MORE(t->block, t->blocks);
-	*block = (struct retuned_block){ { .columns = t->x.size, .solves = true }, t->all.rows };
-	return &block->all;
-}
-
-/* The next of its rows, which is that of the whole */
-static int add_row(struct tuning *t, struct tuned_equations *all)
-{
-	all->rows++;
-	return t->all.rows++;
-}
-
-/* W a = R x, and what reads a: b - F a = G x */
-static void add_block(struct elsewhere *s, int system)
-{
-	struct tuning *t = s->tuning;
-	const int size = t->x.size;
-	struct tuned_equations *all = new_block(t);
-	for (int i = 0; i < t->rows; i++) {
-		struct retuned_row *row = &t->row[i];
-		if (!is_of_system(s, i, system))
-			continue;
-		take_row(s, all, row_apart(s, i, false), all->rows, 0, size);
-		if (row->kind != RETUNED_FREQUENCY)
-			take_row(s, all, row_apart(s, i, true), all->rows, size, s->model->n);
-		if (row->kind != RETUNED_SLOPE)
-			add_tuned_unit(all, all->rows, size + all->rows);
-		row->place = add_row(t, all);
-	}
+	const int to = all->rows++;
+	for (int j = 0; j < all->columns; j++)
+		add_tuned_entry(s, index_of(s, row, j), all, to, j);
 }
 
 static void place_row(struct elsewhere *s, int row)
 {
 	struct tuning *t = s->tuning;
-	take_row(s, &t->all, row, t->all.rows, 0, t->x.size);
-	t->row[row].place = t->all.rows++;
+	t->row[row].place = t->all.rows;
 	t->row[row].positive = mpq_sgn(entry_seen(s, 0, index_of(s, row, 0))) > 0;
+	take_row(s, &t->all, row);
 }
 
-/* Each mass that changes stands alone in its row and its column of W, so that nothing but it divides. */
-static bool masses_stand_alone(const struct elsewhere *s, int system)
-{
-	const int n = s->model->n;
-	int first = 0;
-	while (s->tuning->row[first].kind != RETUNED_SLOPE || s->tuning->row[first].of != system)
-		first++;
-	SCRATCH int *rows = ARRAY(int, n), *columns = ARRAY(int, n);
-	for (int cell = 0; cell < n * n; cell++)
-		if (mpq_sgn(entry_seen(s, 0, index_of(s, row_apart(s, first + cell / n, true), cell % n))) != 0) {
-			rows[cell / n]++;
-			columns[cell % n]++;
-		}
-	bool alone = true;
-	for (int cell = 0; cell < n * n && alone; cell++)
-		alone = entry_stays(s, index_of(s, row_apart(s, first + cell / n, true), cell % n)) ||
-			(rows[cell / n] == 1 && columns[cell % n] == 1);
-	return alone;
-}
-
-/* All rows of a system or none; of a linear model the slopes are always there */
+/* All rows or none; of a linear model they are always there */
 static void take_system(struct elsewhere *s, int system)
 {
 	struct tuning *t = s->tuning;
+	struct tuned_equations *all = &t->system[system];
 	bool changes = !s->model->switching;
 	for (int i = 0; i < t->rows && !changes; i++)
-		changes = is_of_system(s, i, system) && row_changes(s, i);
-	if (changes && !masses_stand_alone(s, system)) {
-		add_block(s, system);
-		return;
-	}
+		changes = t->row[i].kind == RETUNED_SYSTEM && t->row[i].of == system && row_changes(s, i);
+	all->columns = t->x.size;
 	for (int i = 0; i < t->rows && changes; i++)
-		if (is_of_system(s, i, system))
-			place_row(s, i);
+		if (t->row[i].kind == RETUNED_SYSTEM && t->row[i].of == system)
+			take_row(s, all, i);
+}
+
+static int systems_of(const struct elsewhere *s)
+{
+	return s->model->switching ? s->model->switching->systems : 1;
 }
 
 static void take_rows(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
 	t->all.columns = t->x.size;
-	for (int k = 0; k < (s->model->switching ? s->model->switching->systems : 1); k++)
+	t->system = ARRAY(struct tuned_equations, (size_t)systems_of(s));
+	for (int k = 0; k < systems_of(s); k++)
 		take_system(s, k);
-	for (int i = 0; i < t->rows; i++) {
-		const enum retuned_kind kind = t->row[i].kind;
-		const bool apart = kind <= RETUNED_FREQUENCY || (kind >= RETUNED_RELEASE && kind <= RETUNED_FRICTION_W);
-		if (!apart && row_changes(s, i))
+	for (int i = 0; i < t->rows; i++)
+		if (t->row[i].kind != RETUNED_SYSTEM && row_changes(s, i))
 			place_row(s, i);
-	}
 }
 
 /* Per number of the record the given params that it follows from, a bit each */
@@ -316,11 +239,12 @@ static void mark_part(bool *behind, const struct traced_part *part)
 		behind[part->number] = true;
 }
 
-bool *numbers_behind(const struct tuning *t, const struct tuned_equations *all)
+bool *numbers_behind(const struct tuning *t, int count, const struct tuned_equations *const *list)
 {
 	bool *behind = ARRAY(bool, (size_t)t->numbers + 1);
-	for (int i = 0; i < all->entries; i++)
-		mark_part(behind, &all->entry[i].value);
+	for (int k = 0; k < count; k++)
+		for (int i = 0; i < list[k]->entries; i++)
+			mark_part(behind, &list[k]->entry[i].value);
 	for (int i = t->numbers - 1; i >= 0; i--)
 		if (behind[i] && t->number[i].op != TRACED_GIVEN) {
 			mark_part(behind, &t->number[i].a);
@@ -329,19 +253,19 @@ bool *numbers_behind(const struct tuning *t, const struct tuned_equations *all)
 	return behind;
 }
 
-void count_operations(const struct tuning *t, struct tuned_equations *all)
+int operations_behind(const struct tuning *t, int count, const struct tuned_equations *const *list)
 {
-	SCRATCH bool *behind = numbers_behind(t, all);
-	all->operations = 0;
+	SCRATCH bool *behind = numbers_behind(t, count, list);
+	int operations = 0;
 	for (int i = 0; i < t->numbers; i++)
-		all->operations += behind[i] && t->number[i].op != TRACED_GIVEN;
+		operations += behind[i] && t->number[i].op != TRACED_GIVEN;
+	return operations;
 }
 
-static void mark_params(const struct tuning *t, struct tuned_equations *all, const unsigned *params)
+static void mark_params(struct tuned_equations *all, const unsigned *params)
 {
 	for (struct tuned_entry *entry = all->entry; entry < all->entry + all->entries; entry++)
 		entry->params = entry->value.number < 0 ? 0 : params[entry->value.number];
-	count_operations(t, all);
 }
 
 static void keep_record(struct elsewhere *s)
@@ -349,9 +273,9 @@ static void keep_record(struct elsewhere *s)
 	struct tuning *t = s->tuning;
 	t->number = trace_record(&t->numbers);
 	SCRATCH unsigned *params = params_of_record(s);
-	mark_params(t, &t->all, params);
-	for (int b = 0; b < t->blocks; b++)
-		mark_params(t, &t->block[b].all, params);
+	mark_params(&t->all, params);
+	for (int k = 0; k < systems_of(s); k++)
+		mark_params(&t->system[k], params);
 }
 
 static void mark_acting(struct elsewhere *s)
@@ -363,21 +287,27 @@ static void mark_acting(struct elsewhere *s)
 			t->acts[t->row[i].place * t->x.size + j] = mpq_sgn(entry_seen(s, 0, index_of(s, i, j))) != 0;
 }
 
-/* Of a linear model, whose rows are all of one system, as they are or solved */
+struct tuned_entry tuned_frequency(const struct tuning *t, int load)
+{
+	const int at = t->x.load[load];
+	const struct tuned_entry *entry = t->system->entry, *end = entry + t->system->entries;
+	while (entry < end && (entry->row != at + 1 || entry->column != at))
+		entry++;
+	return entry < end ? *entry : (struct tuned_entry){ 0 };
+}
+
 static void number_rows(struct elsewhere *s)
 {
 	struct tuning *t = s->tuning;
-	if (t->blocks)
-		t->all = t->block[0].all;
 	t->output = ARRAY(int, s->model->outputs);
-	t->frequency = ARRAY(int, s->model->system.loads);
+	t->frequency = ARRAY(bool, s->model->system.loads);
 	for (int i = 0; i < s->model->outputs; i++) {
 		t->output[i] = retuned_place(t, RETUNED_OUTPUT, 0, i);
 		t->outputs += t->output[i] >= 0;
 	}
 	for (int i = 0; i < s->model->system.loads; i++) {
-		t->frequency[i] = retuned_place(t, RETUNED_FREQUENCY, 0, i);
-		t->frequencies += t->frequency[i] >= 0;
+		t->frequency[i] = oscillates(s->model->system.load[i].forcing) && tuned_frequency(t, i).params != 0;
+		t->frequencies += t->frequency[i];
 	}
 }
 

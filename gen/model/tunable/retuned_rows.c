@@ -6,18 +6,6 @@
 
 /* ---- of any model ---- */
 
-/* n x size, 0 before */
-static void rows_of_highest(const struct layout *x, const struct linear *system, mpq_t *row)
-{
-	const int size = x->size;
-	RATIONALS *A = augmented_matrix(x, system, 0);
-	for (int i = 0; i < system->n; i++) {
-		mpq_t *from = A + highest_state(system, i) * size;
-		for (int j = 0; j < size; j++)
-			mpq_swap(row[i * size + j], from[j]);
-	}
-}
-
 void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
 		   int segment, mpq_t *row)
 {
@@ -31,40 +19,6 @@ void row_of_output(const struct layout *x, const struct linear *system, const st
 	for (int i = 0; i < system->inputs; i++)
 		for (int k = 0; k <= system->input[i].hold && k < 2; k++)
 			mpq_set(row[x->input[i] + k], output->input[k][i]);
-}
-
-static void add_multiple(int size, mpq_srcptr factor, const mpq_t *from, mpq_t *row)
-{
-	for (int j = 0; j < size && mpq_sgn(factor) != 0; j++) {
-		if (mpq_sgn(from[j]) == 0)
-			continue;
-		rational_addmul(row[j], factor, from[j]);
-	}
-}
-
-/* R and W of an equation, W a = R x; size and n entries, 0 before. highest: a over x */
-static void equation_row(const struct linear *system, int equation, int size, const mpq_t *highest, mpq_t *R, mpq_t *W)
-{
-	const int n = system->n;
-	for (int k = 0; k < n; k++) {
-		mpq_set(W[k], (system->velocity[k] >= 0 ? system->M : system->C)[equation * n + k]);
-		add_multiple(size, W[k], highest + k * size, R);
-	}
-}
-
-/* Likewise of an output R x - W a: what of it is no highest derivative. form: NULL: it reads none */
-static void part_row(const struct model *model, const struct form *form, int size, const mpq_t *highest,
-		     const mpq_t *full, mpq_t *R, mpq_t *W)
-{
-	for (int j = 0; j < size; j++)
-		mpq_set(R[j], full[j]);
-	for (int i = 0; form && i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind != BASIS_COORD || basis->order < model->frame.coord[basis->index]->highest)
-			continue;
-		mpq_neg(W[basis->index], form->term[i].factor);
-		add_multiple(size, W[basis->index], highest + basis->index * size, R);
-	}
 }
 
 /* ---- a list of them ---- */
@@ -92,57 +46,21 @@ static void list_output(struct listing *l, enum retuned_kind kind, int of, int i
 	row_of_output(l->x, &l->model->system, row, l->model->system.segments, segment, entry);
 }
 
-static const struct linear *system_in(const struct model *model, int index)
-{
-	return model->switching ? &model->switching->system[index] : &model->system;
-}
-
 static void list_system(struct listing *l, int index)
 {
-	const struct linear *system = system_in(l->model, index);
-	const int first = l->rows;
-	for (int i = 0; i < system->n; i++)
-		add_row(l, RETUNED_SLOPE, index, i);
-	rows_of_highest(l->x, system, l->entry + first * l->x->size);
+	const struct linear *system = l->model->switching ? &l->model->switching->system[index] : &l->model->system;
+	const int first = l->rows, size = l->x->size;
+	RATIONALS *A = augmented_matrix(l->x, system, 0);
+	for (int i = 0; i < size; i++)
+		add_row(l, RETUNED_SYSTEM, index, i);
+	for (int i = 0; i < size * size; i++)
+		mpq_swap(l->entry[first * size + i], A[i]);
 }
 
-static const mpq_t *highest_of(const struct listing *l, int system)
-{
-	return l->entry + system * l->model->n * l->x->size;
-}
-
-/* W, and R = W times what it was solved to */
-static void list_equations(struct listing *l, int index)
-{
-	const struct linear *system = system_in(l->model, index);
-	for (int i = 0; i < system->n; i++) {
-		add_row(l, RETUNED_W, index, i);
-		mpq_t *R = add_row(l, RETUNED_R, index, i);
-		equation_row(system, i, l->x->size, highest_of(l, index), R, R - l->x->size);
-	}
-}
-
-/* The last row apart */
-static void list_parts(struct listing *l, int system, const struct form *form, enum retuned_kind R, enum retuned_kind W)
-{
-	const struct retuned_row full = l->row[l->rows - 1];
-	const int size = l->x->size;
-	add_row(l, W, full.of, full.index);
-	mpq_t *rest = add_row(l, R, full.of, full.index);
-	part_row(l->model, form, size, highest_of(l, system), rest - 2 * size, rest, rest - size);
-}
-
-/* A reduced model has no highest derivatives of what is written. */
 static void list_linear(struct listing *l)
 {
-	const struct linear *system = &l->model->system;
-	for (int o = 0; o < l->model->outputs; o++) {
-		const struct output *output = &l->model->output[o];
-		list_output(l, RETUNED_OUTPUT, 0, o, output, 0);
-		list_parts(l, 0, l->model->reduction.row ? NULL : output->form, RETUNED_OUTPUT_R, RETUNED_OUTPUT_W);
-	}
-	for (int i = 0; i < system->loads; i++)
-		add_number(l, RETUNED_FREQUENCY, 0, i, system->load[i].forcing->w);
+	for (int o = 0; o < l->model->outputs; o++)
+		list_output(l, RETUNED_OUTPUT, 0, o, &l->model->output[o], 0);
 }
 
 /* ---- of regions ---- */
@@ -164,16 +82,11 @@ static void list_region(struct listing *l, int index)
 	const struct region *region = &s->region[index];
 	for (int k = 0; k < region->holds; k++)
 		list_output(l, RETUNED_HOLD, index, k, region->hold[k].row, 0);
-	for (int k = 0; k < region->releases; k++) {
+	for (int k = 0; k < region->releases; k++)
 		list_output(l, RETUNED_RELEASE, index, k, region->release[k].row, 0);
-		list_parts(l, region->system, region->release[k].form, RETUNED_RELEASE_R, RETUNED_RELEASE_W);
-	}
-	for (int k = 0; k < s->transmitted_forces && region->friction_force; k++) {
-		if (!region->friction_force[k])
-			continue;
-		list_output(l, RETUNED_FRICTION, index, k, region->friction_force[k], 0);
-		list_parts(l, region->system, region->friction_force[k]->form, RETUNED_FRICTION_R, RETUNED_FRICTION_W);
-	}
+	for (int k = 0; k < s->transmitted_forces && region->friction_force; k++)
+		if (region->friction_force[k])
+			list_output(l, RETUNED_FRICTION, index, k, region->friction_force[k], 0);
 }
 
 static void list_jumps(struct listing *l, int index, enum retuned_kind kind, const struct impact_law *impact_law,
@@ -235,8 +148,6 @@ struct listing list_rows(const struct model *model, const struct layout *x)
 	struct listing l = { .model = model, .x = x };
 	for (int k = 0; k < systems; k++)
 		list_system(&l, k);
-	for (int k = 0; k < systems; k++)
-		list_equations(&l, k);
 	(model->switching ? list_regions : list_linear)(&l);
 	return l;
 }
