@@ -76,18 +76,27 @@ static void leave_step_open(struct work *w)
 	request->step_open = true;
 }
 
+/* The spec; of linear equations what they were made of has the units. */
+static struct spec *parsed(const struct work *w, const struct source *source)
+{
+	struct spec *spec = parse_spec(source);
+	if (w->given)
+		adopt_units(spec, w->given);
+	return spec;
+}
+
 /* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and it is told
  * why. What stands in the way of any is said by the last. */
 static bool make_of(struct work *w, const struct source *source)
 {
 	struct request *request = &w->options.request;
-	w->spec = parse_spec(source);
+	w->spec = parsed(w, source);
 	leave_step_open(w);
 	if (!diagnostics_errors() && !request->scheme && !w->spec->request.scheme && !request->solution) {
 		request->passed_over = refusal_of(try_all, w);
 		if (!request->passed_over)
 			return true;
-		w->spec = parse_spec(source);
+		w->spec = parsed(w, source);
 	}
 	return make_model(w) && make_step(w);
 }

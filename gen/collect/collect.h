@@ -266,6 +266,8 @@ void forget_lets(const struct spec *spec);
 /* ---- dimensions.c: units, of a spec that has some ---- */
 
 void check_dimensions(struct spec *spec);                   /* says what is wrong; names get the units that follow */
+/* Of a spec whose names are those of another one and whose numbers are in its units, by name; nothing is checked. */
+void adopt_units(struct spec *spec, const struct spec *given);
 void check_time(const struct node *node);                   /* leaves the statement where its unit is another */
 
 /* ---- table.c: the straight pieces of a table() as numbers ---- */

@@ -480,6 +480,18 @@ void check_dimensions(struct spec *spec)
 		keep_found(&w, spec);
 }
 
+void adopt_units(struct spec *spec, const struct spec *given)
+{
+	for (struct symbol *s = spec->first; s; s = s->next) {
+		const struct symbol *like = given->first;
+		while (like && (like->kind != s->kind || strcmp(like->name, s->name) != 0))
+			like = like->next;
+		s->unit = like ? like->unit : NULL;
+	}
+	spec->units = given->units;
+	spec->adopted = given->units;
+}
+
 void check_time(const struct node *node)
 {
 	struct dimension time = dimension_of_time(1);

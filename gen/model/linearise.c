@@ -280,7 +280,9 @@ static void print_output(FILE *to, struct linearising *l, const struct output *o
 	if (output->peak || !form)
 		return;
 	if (names_itself(l->b->model, output->name)) {
-		fprintf(to, "output %s\n", plain_name(output->name));
+		const bool scaled = output->unit && !is_coherent(output->unit);
+		fprintf(to, "output %s%s\n", plain_name(output->name),
+			scaled ? format(" \"%s\"", output->unit->text) : "");
 		return;
 	}
 	mpq_t **slope = all_slopes(l, 1, &form);

@@ -560,7 +560,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	name_coordinates(&b);
 	name_states(&b);
 	give_states_in_units(&b);
-	if (spec->units && !request->again.tunable && !request->again.relative)
+	if (spec->units && !spec->adopted && !request->again.tunable && !request->again.relative)
 		check_dimensions(spec);
 	collect_model(&b);
 	build_parts(&b);

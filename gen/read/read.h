@@ -294,7 +294,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct tunable *tunable;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
-	bool units;                 /* some are written: dimensions are checked */
+	bool units, adopted;        /* some are written: dimensions are checked, unless they are another spec's */
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);
