@@ -8,7 +8,7 @@ PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev l
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
 CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy python3-pip python3-venv \
-	python3-wheel octave octave-dev octave-control libopenmpi-dev openmpi-bin cmake cppcheck
+	python3-wheel mypy octave octave-dev octave-control libopenmpi-dev openmpi-bin cmake cppcheck
 
 .PHONY: all setup deps demo-deps check-deps demo tests check quick check-merge check-long faults bench charts \
 	charts-quick charts-twice charts-page chart gallery firmware-report bare install clean

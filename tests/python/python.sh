@@ -45,6 +45,13 @@ if [ "${3:-}" = wheel ]; then
 	"an environment/bin/plrun" empty/sdcsf.spec 1 >rows.csv 2>log && [ "$(wc -l <rows.csv)" -eq 102 ] &&
 		"an environment/bin/plgen" empty/sdcsf.spec >made.c 2>>log && [ -s made.c ]
 	result $? 'the commands plgen and plrun of the environment'
+	if command -v mypy >/dev/null 2>&1; then
+		(cd "$root/host/python" &&
+			mypy --check-untyped-defs --ignore-missing-imports --cache-dir "$work/types" plgen) >log 2>&1
+		result $? 'its types agree'
+	else
+		skip types 'mypy is not installed'
+	fi
 	tap_end
 fi
 prepare

@@ -16,20 +16,17 @@ import ctypes
 import hashlib
 import os
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from fractions import Fraction
-from typing import Any, Union
+from typing import Any
 
 import numpy as np
 
 from . import _code
-from ._code import VERSION, Code, Compiler, Error
+from ._code import VERSION, Code, Compiler, Error, Params, Units, Value
 from ._linear import Linear, StateSpace, StateSpaces
 
 __all__ = ['Model', 'Error', 'RunError', 'StateSpace', 'VERSION']
-
-Value = Union[float, int, str, Fraction]
 STATUS = ((2, 'the step has met more crossings, or needed a longer search for them, than its bound'),
           (1, 'the step has left the finite numbers'),
           (4, 'the step needed more substeps than its bound'),
@@ -53,35 +50,6 @@ class RunError(Error):
         self.rows, self.t, self.status = rows, t, status
 
 
-class Params(Mapping):
-    """Tunable params, and those that were given, in their own units: m.params["k"], m.params["k"] = 70."""
-
-    def __init__(self, model: Model) -> None:
-        self._model = model
-
-    def _all(self) -> dict[str, Any]:
-        m = self._model
-        return {**m._given, **{name: float(x) for name, x in zip(m._code.tunable, m._tuned / m._code.factors)}}
-
-    def __getitem__(self, name: str) -> Any:
-        every = self._all()
-        if name not in every:
-            raise KeyError(_code.unknown('tunable or given param', name, every))
-        return every[name]
-
-    def __setitem__(self, name: str, value: Value) -> None:
-        self._model.retune(**{name: value})
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._all())
-
-    def __len__(self) -> int:
-        return len(self._all())
-
-    def __repr__(self) -> str:
-        return repr(self._all())
-
-
 class Model(Linear):
     """A model at a point of its motion; it begins at t = 0 with the spec's initial values.
 
@@ -100,7 +68,8 @@ class Model(Linear):
                  options: Sequence[str] = (), matrices: Mapping[str, Any] | None = None, squeeze: bool = True,
                  **more: Value) -> None:
         text = isinstance(spec, str) and '\n' in spec
-        self._spec, self._text = ('-', spec) if text else (os.fspath(spec), None)
+        self._spec: str = '-' if text else os.fspath(spec)
+        self._text: str | None = str(spec) if text else None
         self._options = list(options)
         for name, value in (('--real', real), ('--scheme', scheme)):
             if value is not None:
@@ -113,6 +82,8 @@ class Model(Linear):
         self._code: Code = None                 # type: ignore[assignment]
         self._told: dict[str | None, tuple[dict[str, Any], str]] = {}
         self._lanes: Any = None
+        self._t: Any = np.empty(0)
+        self._tail: np.ndarray | None = None
         self._build({**(params or {}), **more}, step)
 
     # ---- making it ----
@@ -183,17 +154,52 @@ class Model(Linear):
 
     # ---- what it is ----
 
-    name = property(lambda self: self._code.name)
-    states = property(lambda self: self._code.states)
-    inputs = property(lambda self: self._code.inputs)
-    outputs = property(lambda self: self._code.outputs)
-    tunable = property(lambda self: tuple(self._code.tunable))
-    dtype = property(lambda self: self._code.dtype, doc='of all numbers: float64 or float32')
-    h = property(lambda self: self._h, doc='the step [s]')
-    notes = property(lambda self: self._code.notes)
-    params = property(Params)
-    units = property(lambda self: self._code.units)
-    ss = property(StateSpaces, doc='A, B, C, D over the inputs, discrete: those of a step; ss(at=...) at another point')
+    @property
+    def name(self) -> str:
+        return self._code.name
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        return self._code.states
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return self._code.inputs
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        return self._code.outputs
+
+    @property
+    def tunable(self) -> tuple[str, ...]:
+        return tuple(self._code.tunable)
+
+    @property
+    def dtype(self) -> np.dtype:
+        """Of all numbers: float64 or float32."""
+        return self._code.dtype
+
+    @property
+    def h(self) -> float:
+        """The step [s]."""
+        return self._h
+
+    @property
+    def notes(self) -> str:
+        return self._code.notes
+
+    @property
+    def params(self) -> Params:
+        return Params(self)
+
+    @property
+    def units(self) -> Units:
+        return self._code.units
+
+    @property
+    def ss(self) -> StateSpaces:
+        """A, B, C, D over the inputs, discrete: those of a step; ss(at=...) at another point."""
+        return StateSpaces(self)
 
     @property
     def t(self) -> np.ndarray:
@@ -347,9 +353,8 @@ class Model(Linear):
     def _hold_first(self, u: np.ndarray) -> None:
         c = self._code
         for k in range(c.most):
-            row = [u[k if a == 0 else k - c.most + a, i] if a == 0 or k >= c.most - a else 0.0
-                   for i, a in enumerate(c.ahead)]
-            row = np.array(row, dtype=self.dtype)
+            row = np.array([u[k if a == 0 else k - c.most + a, i] if a == 0 or k >= c.most - a else 0.0
+                            for i, a in enumerate(c.ahead)], dtype=self.dtype)
             c.model.hold(self._state, row.ctypes.data)
 
     def run(self, u: Any, *, out: np.ndarray | None = None, start: bool | None = None,
@@ -367,7 +372,7 @@ class Model(Linear):
                and depends on where pieces begin
 
         RunError, with the rows so far, where a step leaves the finite numbers or its bounds."""
-        first = self._fresh if start is None else start
+        first = int(self._fresh if start is None else start)
         if self.inputs:
             if isinstance(u, (int, np.integer)):
                 raise ValueError('the model has inputs, run() takes their samples: ' + ', '.join(self.inputs))
@@ -381,12 +386,11 @@ class Model(Linear):
             if n != u or n < 0:
                 raise ValueError('expected a number of steps, found {}'.format(u))
             u = None
-        rows = self._room(out, n + bool(first))
+        rows = self._room(out, n + first)
         if record is not None:
             self._keep(record)
-        first = int(bool(first))
         if first:
-            if self.inputs and self._code.most:
+            if record is not None and self._code.most:
                 self._hold_first(record)
             rows[0] = self.out()
         self._fresh = False

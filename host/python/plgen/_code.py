@@ -14,10 +14,11 @@ import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
+Value = Union[float, int, str, Fraction]
 VERSION = 2             # PL_MODEL_VERSION: the shape of the descriptor below
 
 
@@ -221,8 +222,8 @@ void plgen_lanes(size_t count, size_t n, const {real} *params, {real} h, const {
 def _descriptor(real: type) -> type[ctypes.Structure]:
     """pl_model or pl_modelf of plrt.h, entry by entry."""
     p, size, count = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
-    call = ctypes.CFUNCTYPE
-    names, reals = ctypes.POINTER(ctypes.c_char_p), ctypes.POINTER(real)
+    call: Any = ctypes.CFUNCTYPE
+    names, reals = ctypes.POINTER(ctypes.c_char_p), ctypes.POINTER(real)    # type: ignore[var-annotated]
 
     class Descriptor(ctypes.Structure):
         _fields_ = [('version', count), ('real_size', count), ('name', ctypes.c_char_p), ('size', size),
@@ -329,15 +330,45 @@ class Code:
         hold = '{name}_hold(&s, first);\n    {name}_hold(&b.shared, first);'.format(name=self.name) if self.most else ''
         code = text + LANES.format(u=u, hold=hold, **self._words())
         function = self._loaded(compiler, code).plgen_lanes
-        p, size = ctypes.c_void_p, ctypes.c_size_t
+        p, size, real = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_float if self.single else ctypes.c_double
         function.restype = None
-        function.argtypes = [size, size, p, ctypes.c_float if self.single else ctypes.c_double] + 7 * [p]
+        function.argtypes = [size, size, p, real, p, p, p, p, p, p, p]
         return function
 
 
 # ---- what plgen is given ----
 
-def expression(value: Any) -> str:
+class Params(Mapping):
+    """Tunable params, and those that were given, in their own units: m.params["k"], m.params["k"] = 70."""
+
+    def __init__(self, model: Any) -> None:
+        self._model = model
+
+    def _all(self) -> dict[str, Any]:
+        m = self._model
+        return {**m._given, **{name: float(x) for name, x in zip(m._code.tunable, m._tuned / m._code.factors)}}
+
+    def __getitem__(self, name: str) -> Any:
+        every = self._all()
+        if name not in every:
+            raise KeyError(unknown('tunable or given param', name, every))
+        return every[name]
+
+    def __setitem__(self, name: str, value: Value) -> None:
+        self._model.retune(**{name: value})
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def __repr__(self) -> str:
+        return repr(self._all())
+
+
+
+def expression(value: Value) -> str:
     """A value as plgen reads it: an expression as it is, a number in the digits that read back as the same."""
     return str(value) if isinstance(value, (str, int, Fraction)) else repr(float(value))
 
