@@ -66,6 +66,7 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
+double needed_error(const struct requirement *r, double largest);       /* of the output */
 
 /* ---- amplitudes.c ---- */
 

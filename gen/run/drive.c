@@ -30,20 +30,32 @@ static double shape(int kind, double t, double until, const double *w, int count
 	return sin(w[kind - SQUARE] * t) >= 0 ? 1 : -1;
 }
 
-struct sampled drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
-		      const mpq_t *most)
+int sampled_inputs(const struct model *model)
 {
-	const int inputs = system->inputs;
+	return model->delays ? model->delays->inputs : model->spec->count.inputs;
+}
+
+struct sampled inputs_at_rest(const struct model *model, double h, long samples)
+{
+	const int inputs = sampled_inputs(model);
 	struct sampled d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, inputs),
-			   .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
+			     .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
+	for (int i = 0; i < inputs; i++)
+		d.ramps[i] = model->system.input[i].hold > 0;
+	return d;
+}
+
+struct sampled drive_of(const struct model *model, int kind, const double *w, int count, double h, long samples,
+			const mpq_t *most)
+{
+	const int inputs = sampled_inputs(model);
+	struct sampled d = inputs_at_rest(model, h, samples);
 	/* it changes sign once in half of the shortest period, on average */
 	const double chance = fmin(0.5, h * w[count - 1] / 3.14159265358979);
 	uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
 	SCRATCH double *sign = ARRAY(double, inputs);
-	for (int i = 0; i < inputs; i++) {
-		d.ramps[i] = system->input[i].hold > 0;
+	for (int i = 0; i < inputs; i++)
 		sign[i] = 1;
-	}
 	for (long k = 0; k < samples + 2; k++)
 		for (int i = 0; i < inputs; i++) {
 			if ((double)(next_random(&state) >> 11) * 0x1p-53 < chance)
