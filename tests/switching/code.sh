@@ -140,7 +140,7 @@ result $? "crossings.c: freestanding"
 
 # ---- expressions as written; what a run that ends early says ----
 
-"$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    expression' >log
+"$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    switching function' >log
 printf '    switching function 0: -w + x, breakpoints 0.1, 0.2\n    switching function 1: 3*y, breakpoints 3, 6, 15\n' |
     diff - log >>log 2>&1
 result $? 'bump: sign and scale of switching functions as first written'

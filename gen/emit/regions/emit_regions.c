@@ -473,8 +473,8 @@ void emit_event_note(const struct emitter *e)
 	note_search(e, function, of);
 	note(e, "At an event %s, and the rest of the step goes on in the region behind ($o_matrix).",
 	     !guards ? "the state is taken there" : e->model->switching->impacts > 0
-			? "impacts turn the speed of approach to -restitution times it, the combination of sticking "
-			  "and slipping that contradicts no force is taken"
+			? "impacts turn the approach speed s to -restitution s, the combination of sticking and "
+			  "slipping that contradicts no force is taken"
 			: "the combination of sticking and slipping that contradicts no force is taken");
 	note(e, "A breakpoint passed by less than rounding errors is no event. $n_crossings lists those of a step; "
 		"more than $N_MAX_EVENTS set PL_TOO_MANY_EVENTS.");
