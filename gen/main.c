@@ -478,7 +478,7 @@ static void make_one(void *context)
 {
 	struct many *m = context;
 	const struct source *source = source_of(&m->now);
-	m->now.spec = source ? parse_spec(source) : NULL;
+	m->now.spec = source ? parsed(&m->now, source) : NULL;
 	if (!source || diagnostics_errors() || !make_model(&m->now))
 		abandon();
 	if (m->now.model->nonlinear.terms > 0)

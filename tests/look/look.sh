@@ -380,7 +380,8 @@ wrong |= [p["by"] for p in told["pairs"]] != ["gyroscopic terms", "names"]
 sys.exit(wrong)' >>log 2>&1
 result $? 'campbell: JSON, and pairs the other way around'
 # A cubic spring that a weight bends by 1: K = 1 + 3*0.25*x^2 there, sqrt(k + 0.75)/(2 pi) Hz; the speed in rpm
-printf "model m\nparam k = 1\ncoord x\nx'' + k*x + 0.25*x^3 = k + 0.25\nstep 0.1\n" >bent.spec
+printf "model m\nparam m = 1 \"kg\", k = 1 \"N/m\"\ncoord x \"m\"
+m*x'' + k*x + (0.25 \"N/m^3\")*x^3 = k*(1 \"m\") + (0.25 \"N\")\nstep 0.1\n" >bent.spec
 "$plgen" --plot campbell --sweep k=1:3rpm:3 --orders 10 -o bent.csv bent.spec 2>log && awk -F , '/^[0-9]/ { rows++
 	d = $3 * 8 * atan2(1, 1) / sqrt($1 + 0.75) - 1; if (d * d > 1e-24 || $7 != "none") wrong = 1 }
 	/^# 10x crosses mode 1 at k = 1\.[0-9]*: 0\.[0-9]* Hz/ { seen++ }
