@@ -57,15 +57,21 @@ const char *error_text(const struct alternative *a, int i)
 		      a->inputs_tried ? ", with any inputs" : "", arithmetic_text(a));
 }
 
+/* As written, a unit behind it too */
+static const char *quantity_text(const struct node *value)
+{
+	const char *text = text_between(value->start, value->end);
+	return value->unit ? format("%s %s", text, value->unit->text) : text;
+}
+
 const char *need_text(const struct requirement *r)
 {
 	const struct need *need = r->need;
 	const char *text = format("%s within %s%s until %s", need->output,
-				  text_between(need->bound->start, need->bound->end), need->percent ? " %" : "",
-				  text_between(need->until->start, need->until->end));
+				  quantity_text(need->bound), need->percent ? " %" : "", quantity_text(need->until));
 	for (int i = 0; i < need->inputs; i++)
 		text = format("%s%s |%s| <= %s", text, i ? "," : " for", need->input[i].name,
-			      text_between(need->input[i].most->start, need->input[i].most->end));
+			      quantity_text(need->input[i].most));
 	return text;
 }
 
