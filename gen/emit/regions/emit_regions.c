@@ -471,7 +471,7 @@ void emit_event_note(const struct emitter *e)
 	     table(e, "row"), table(e, "breakpoint"), event_text(e));
 	note_clear_steps(e, function, table(e, format("%schord_error", of)));
 	note_search(e, function, of);
-	note(e, "At an event %s, and the rest of the step goes on in the region behind ($o_matrix).",
+	note(e, "At an event %s, and the step goes on in the region behind ($o_matrix).",
 	     !guards ? "the state is taken there" : e->model->switching->impacts > 0
 			? "impacts turn the approach speed s to -restitution s, the combination of sticking and "
 			  "slipping that contradicts no force is taken"
