@@ -98,7 +98,7 @@ step_of() {
 }
 
 functions_of() { # ID
-	sed -n '/^ \*     expression [0-9]*: /p' "$1.c"
+	sed -n '/^ \*     switching function [0-9]*: /p' "$1.c"
 }
 
 # facts_of ID: of its C sets `scheme`; `inputs`, `pieces`, `own_region`, `selftest` and `lanes`: whether it has them;
@@ -143,7 +143,7 @@ facts_of() {
 		/ 3 stages, of order 5/ { few = "yes" }
 		/^ \* / { banner = banner substr($0, 3) }
 		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
-		/^ \*     expression [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
+		/^ \*     switching function [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
 		/is kept apart from what moves in it:/ && !lists++ {
 			sub(/;.*/, "")
 			apart = $0 " "
