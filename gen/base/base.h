@@ -40,8 +40,8 @@ enum {
 	LIMIT_BITS = 1000000,       /* of an exact value */
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
-	LIMIT_TUNABLES = 16,        /* params that the target may change, */
-	LIMIT_DERIVED = 16,         /* and what is computed from them as if it were one */
+	LIMIT_TUNABLES = 16,        /* params that the target may change */
+	LIMIT_FORMULAS = 65535,     /* numbers that follow from them, constants counted: a short in pl_operation */
 	/* states, loads and inputs of an independent block whose e^{A h} the target computes */
 	LIMIT_TUNED_BLOCK = 64,
 	LIMIT_REGIONS = 243,        /* of a piecewise-linear model, in one segment of time */

@@ -176,6 +176,10 @@ void emit_equations(const struct emitter *e, const struct tuning *t, bool togeth
 			take_operations(&x, together ? count : 1, list + k);
 		text[k] = (struct equations_text){ formulas_text(e, &x, first), entries_text(e, &x, list[k]) };
 	}
+	if (t->params + x.constants + x.operations > LIMIT_FORMULAS)
+		error(t->param[0].at, "fewer tunable params, or fewer equations that they stand in",
+		      "what follows from tunable params takes %d numbers, of at most %d",
+		      t->params + x.constants + x.operations, LIMIT_FORMULAS);
 	emit_constants(e, &x);
 	emit_operations(e, &x);
 	emit_places(e, &x);

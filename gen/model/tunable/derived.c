@@ -89,7 +89,7 @@ static void derive_in(struct spec *spec, struct node **place)
 {
 	struct node *node = *place;
 	struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
-	if (!first_tuned(node) || (s && s->tuning.number) || spec->derived == LIMIT_DERIVED)
+	if (!first_tuned(node) || (s && s->tuning.number))
 		return;
 	if (is_number(node) && is_other(node)) {
 		*place = derived_name(spec, node);
@@ -172,11 +172,8 @@ static bool stays_here(const struct node *node, int i)
 static _Noreturn void refuse_decided(const struct node *node, const struct node *name)
 {
 	const bool call = node->kind == NODE_CALL, power = node->kind == NODE_POWER;
-	const char *one_more = format("%d functions and conditions of tunables are found on the target, and this "
-				      "is one more", LIMIT_DERIVED);
 	error(name->at,
-	      is_number(node) ? one_more
-	      : call ? "what tunables alone make is found on the target; make what it gives a tunable of its own"
+	      call ? "what tunables alone make is found on the target; make what it gives a tunable of its own"
 		     : "which way it goes is decided when plgen runs: where formulas change is fixed",
 	      "'%s' is tunable, or made of what is, and stands inside %s", name->symbol->name,
 	      call ? format("%s()", function_name(node->function)) : power ? "an exponent" : "a condition");
@@ -194,7 +191,7 @@ static void check_in(void *context, struct node **place)
 	}
 	for (int i = 0; i < node->children; i++) {
 		const struct node *name = first_tuned(node->child[i]);
-		if (name && stays_here(node, i) && (!*regions || is_number(node)))
+		if (name && stays_here(node, i) && !*regions)
 			refuse_decided(node, name);
 		check_in(context, &node->child[i]);
 	}

@@ -22,11 +22,11 @@ static void set_value(mpq_ptr value, int index)
 /* Related by nothing; or near + 2^-40 |near| of that: what has a sign there, or an order, keeps it */
 static mpq_t *values_at(const struct elsewhere *s, int place)
 {
-	enum { PARAMS = LIMIT_TUNABLES + LIMIT_DERIVED };
+	enum { APART = 1 << 20 };   /* more than there are params */
 	mpq_t *values = rationals(s->tuning->params);
 	RATIONAL unit = ZERO;
 	for (int k = 0; k < s->tuning->params; k++) {
-		set_value(values[k], place * PARAMS + k);
+		set_value(values[k], place * APART + k);
 		if (!s->near)
 			continue;
 		mpq_abs(unit, s->near[k]);
