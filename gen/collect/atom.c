@@ -90,14 +90,15 @@ bool depends_on_time_only(const struct basis *basis)
 	return basis->atom ? !basis->atom->input && !basis->atom->state : basis->kind <= BASIS_FORCING;
 }
 
-/* Highest derivatives are what the equations are solved for: they cannot stand inside, but as the velocity of friction
- * where there is no mass. */
+/* Highest derivatives are what the equations are solved for: inside they stand in equations alone, whose other factors
+ * may be of the state, and as the velocity of friction where there is no mass. */
 static void check_highest(const struct collector *c, const struct node *node, const struct form *form, bool params,
 			  bool slides)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		if (!c->output && is_highest(c->frame, basis) && !(slides && basis->order == 1))
+		const bool allowed = c->output || (c->equation && keeps(c)) || (slides && basis->order == 1);
+		if (!allowed && is_highest(c->frame, basis))
 			not_linear(c, node, params ? "has a tunable factor, by which the equation can be divided"
 						   : "is not linear");
 	}
@@ -115,7 +116,7 @@ struct form *time_part(const struct form *form, bool atoms)
 static bool same_atom(const struct atom *a, const struct atom *b)
 {
 	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison ||
-	    a->operands != b->operands || a->param != b->param)
+	    a->operands != b->operands || a->param != b->param || a->component != b->component)
 		return false;
 	for (int i = 0; i < a->operands; i++)
 		if (a->operand[i] != b->operand[i] || (a->exponent && a->exponent[i] != b->exponent[i]))
@@ -125,7 +126,7 @@ static bool same_atom(const struct atom *a, const struct atom *b)
 
 static struct form *form_of_atom(struct collector *c, const struct node *node, struct atom wanted)
 {
-	size_t hash = (size_t)wanted.kind * 64 + wanted.function;
+	size_t hash = (size_t)wanted.kind * 64 + wanted.function + (size_t)wanted.component * 1024;
 	for (int i = 0; i < wanted.operands; i++)
 		hash = mix(hash, form_hash(wanted.operand[i]) + (wanted.exponent ? wanted.exponent[i] : 0));
 	struct atom **link = &c->atoms->atom[(hash >> 20) % BUCKETS];
@@ -155,6 +156,12 @@ static struct form *new_atom(struct collector *c, const struct node *node, struc
 	for (int i = 0; i < count; i++)
 		wanted.operand[i] = share(c, operand[i])->form;
 	return form_of_atom(c, node, wanted);
+}
+
+struct form *kept_operands(struct collector *c, const struct node *node, struct atom wanted, int count,
+			   const struct form *const *operand)
+{
+	return new_atom(c, node, wanted, count, operand);
 }
 
 struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param)

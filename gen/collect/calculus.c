@@ -8,6 +8,10 @@ struct differentiation {
 	struct collector *c;
 	enum basis_kind kind;       /* BASIS_COORD, or BASIS_INPUT: */
 	int index, order;           /* what it is by */
+	const struct form *by;      /* or by this, an operand of the atom */
+	/* or in time, of which this is the derivative of a term that is no atom */
+	struct form *(*rate)(void *context, const struct form_term *term);
+	void *context;
 	struct form **known;        /* per atom: its derivative, once found */
 	int count;
 };
@@ -141,7 +145,7 @@ static struct form *derive_table(struct differentiation *d, const struct atom *a
 
 static struct form *derive_call(struct differentiation *d, const struct atom *a, const struct form *itself)
 {
-	struct form *x = sum(a->operand[0], form_number(0));
+	struct form *x = form_alias(a->operand[0]);
 	switch (a->function) {
 	case FN_ATAN2:    return derive_angle(d, a);
 	case FN_MIN:
@@ -149,7 +153,8 @@ static struct form *derive_call(struct differentiation *d, const struct atom *a,
 	case FN_DEADZONE:
 	case FN_CLIP:     return derive_clipped(d, a);
 	case FN_TABLE:    return derive_table(d, a);
-	default:          return kept_product(d->c, a->node, slope_of_function(d->c, a, x, itself), derive(d, x));
+	default:
+		return kept_product(d->c, a->node, slope_of_function(d->c, a, x, itself), derive(d, a->operand[0]));
 	}
 }
 
@@ -159,16 +164,37 @@ static struct form *derive_reciprocal(struct differentiation *d, const struct at
 	return form_difference(form_number(0), kept_product(d->c, a->node, square, slope));
 }
 
+/* M x' = f' - M' x */
+static struct form *derive_solution(struct differentiation *d, const struct atom *a)
+{
+	struct collector *c = d->c;
+	struct linear_system e = system_of(a, a->operand);
+	const struct form **right = ARRAY(const struct form *, e.n);
+	struct form **x = ARRAY(struct form *, e.n);
+	for (int j = 0; j < e.n; j++)
+		x[j] = kept_solution(c, a->node, &e, j);
+	for (int i = 0; i < e.n; i++) {
+		struct form *slope = derive(d, e.f[i]);
+		for (int j = 0; j < e.n; j++)
+			slope = form_difference(slope, kept_product(c, a->node, derive(d, e.M[i * e.n + j]), x[j]));
+		right[i] = slope;
+	}
+	e.f = right;
+	e.written = NULL;
+	return kept_solution(c, a->node, &e, a->component);
+}
+
 static struct form *derive_atom(struct differentiation *d, const struct atom *a)
 {
 	const struct form *itself = form_unit((struct basis){ .kind = BASIS_ATOM, .index = a->index, .atom = a });
-	if (d->kind == BASIS_INPUT ? !a->input : !a->state)
+	if (!d->by && !d->rate && (d->kind == BASIS_INPUT ? !a->input : !a->state))
 		return NEW(struct form);
 	switch (a->kind) {
 	case ATOM_PRODUCT:    return derive_product(d, a);
 	case ATOM_RECIPROCAL: return derive_reciprocal(d, a, itself);
 	case ATOM_POWER:      return derive_power(d, a, itself);
 	case ATOM_CALL:       return derive_call(d, a, itself);
+	case ATOM_SOLUTION:   return derive_solution(d, a);
 	case ATOM_PARAM:
 	case ATOM_COMPARE:    return NEW(struct form);
 	default: return kept_choice(d->c, a->node, a->operand[0], derive(d, a->operand[1]), derive(d, a->operand[2]));
@@ -188,10 +214,14 @@ static struct form *known_derivative(struct differentiation *d, const struct ato
 static struct form *derive(struct differentiation *d, const struct form *form)
 {
 	struct form *total = NEW(struct form);
+	if (d->by)
+		return form == d->by ? form_number(1) : total;
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
 			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
+		else if (d->rate)
+			form_add_to(total, d->rate(d->context, term), NULL);
 		else if (term->basis.kind == d->kind && term->basis.index == d->index &&
 			 term->basis.order == d->order)
 			form_add_basis(total, (struct basis){ .kind = BASIS_ONE }, term->factor);
@@ -203,12 +233,27 @@ struct form **form_derivatives(struct collector *c, int count, const struct form
 			       int order)
 {
 	int atoms = atoms_count(c->atoms);
-	struct differentiation d = { c, by_input ? BASIS_INPUT : BASIS_COORD, index, order, ARRAY(struct form *, atoms),
-				     atoms };
+	struct differentiation d = { .c = c, .kind = by_input ? BASIS_INPUT : BASIS_COORD, .index = index,
+				     .order = order, .known = ARRAY(struct form *, atoms), .count = atoms };
 	struct form **slope = ARRAY(struct form *, count);
 	for (int i = 0; i < count; i++)
 		slope[i] = derive(&d, form[i]);
 	return slope;
+}
+
+struct form *form_partial(struct collector *c, const struct atom *atom, int operand)
+{
+	struct differentiation d = { .c = c, .by = atom->operand[operand] };
+	return derive_atom(&d, atom);
+}
+
+struct form *form_rate(struct collector *c, const struct form *form,
+		       struct form *(*rate)(void *context, const struct form_term *term), void *context)
+{
+	struct differentiation d = { .c = c, .rate = rate, .context = context };
+	d.count = atoms_count(c->atoms);
+	d.known = ARRAY(struct form *, d.count);
+	return derive(&d, form);
 }
 
 /* ---- at a point ---- */
@@ -280,6 +325,12 @@ static struct form *place_product(struct point *p, const struct atom *a, struct 
 	return product;
 }
 
+static struct form *placed_solution(struct collector *c, const struct atom *a, struct form *const *x)
+{
+	const struct linear_system e = system_of(a, (const struct form *const *)x);
+	return kept_solution(c, a->node, &e, a->component);
+}
+
 static struct form *place_param(const struct point *p, const struct atom *a)
 {
 	if (!p->values)
@@ -309,6 +360,7 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
 	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
 	case ATOM_CALL:       return kept_call(c, a->node, a->function, a->operands, x);
+	case ATOM_SOLUTION:   return placed_solution(c, a, x);
 	case ATOM_COMPARE:    return kept_comparison(c, a->node, a->comparison, x[0], x[1]);
 	default:              return kept_choice(c, a->node, x[0], x[1], x[2]);
 	}

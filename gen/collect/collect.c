@@ -95,8 +95,12 @@ static struct value *collect_piecewise(struct collector *c, struct node *node)
 }
 
 /* Functions apply to each cell. */
+static struct value *collect_of_vectors(struct collector *c, struct node *node);
+
 static struct value *collect_call(struct collector *c, struct node *node)
 {
+	if (node->function >= FN_SUM)
+		return collect_of_vectors(c, node);
 	if (node->function >= FN_ATAN2)
 		return collect_piecewise(c, node);
 	struct value *x = collect_argument(c, node), *y = value_new(x->rows, x->columns);
@@ -200,9 +204,10 @@ static struct form *dot(struct collector *c, const struct node *node, const stru
 static struct value *multiply(struct collector *c, const struct node *node, const struct value *a,
 			      const struct value *b, struct place at)
 {
-	if (!is_scalar(a) && !is_scalar(b) && a->columns != b->rows)
+	const bool each = node->each && !is_scalar(a) && a->rows == b->rows && a->columns == b->columns;
+	if (!each && !is_scalar(a) && !is_scalar(b) && a->columns != b->rows)
 		error(at, NULL, "sizes do not fit: %s times %s", shape_text(a), shape_text(b));
-	if (!is_scalar(a) && !is_scalar(b)) {
+	if (!each && !is_scalar(a) && !is_scalar(b)) {
 		struct value *product = value_new(a->rows, b->columns);
 		for (int i = 0; i < a->rows; i++)
 			for (int j = 0; j < b->columns; j++)
@@ -217,8 +222,24 @@ static struct value *multiply(struct collector *c, const struct node *node, cons
 }
 
 static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b,
+			    struct place at);
+
+static struct value *divide_each(struct collector *c, const struct node *node, const struct value *a,
+				 const struct value *b, struct place at)
+{
+	struct value *quotient = value_new(a->rows, a->columns);
+	for (int i = 0; i < a->rows * a->columns; i++) {
+		const struct value above = { 1, 1, &a->cell[i] }, below = { 1, 1, &b->cell[i] };
+		quotient->cell[i] = divide(c, node, &above, &below, at)->cell[0];
+	}
+	return quotient;
+}
+
+static struct value *divide(struct collector *c, const struct node *node, const struct value *a, const struct value *b,
 			    struct place at)
 {
+	if (!is_scalar(b) && node->each)
+		return divide_each(c, node, a, b, at);
 	if (!is_scalar(b))
 		error(at, NULL, "division by a %s matrix", shape_text(b));
 	bool kept = !is_constant(b->cell[0]);
@@ -230,6 +251,25 @@ static struct value *divide(struct collector *c, const struct node *node, const 
 		quotient->cell[i] = kept ? kept_product(c, node, a->cell[i], inverse)
 					 : collect_division(c, a->cell[i], b->cell[0], at);
 	return quotient;
+}
+
+/* sum(v), cumsum(v): v_1, v_1 + v_2, ...; dot(a, b): the sum of products */
+static struct value *collect_of_vectors(struct collector *c, struct node *node)
+{
+	const struct value *a = collect_node(c, node->child[0]);
+	const struct value *b = node->function == FN_DOT ? collect_node(c, node->child[1]) : NULL;
+	const int count = a->rows * a->columns;
+	if (b && (b->rows != a->rows || b->columns != a->columns))
+		error(node->at, NULL, "sizes do not fit: %s and %s", shape_text(a), shape_text(b));
+	struct value *sum = node->function == FN_CUMSUM ? value_new(a->rows, a->columns) : scalar(NEW(struct form));
+	for (int i = 0; i < count; i++) {
+		struct form *term = b ? times(c, node, a->cell[i], b->cell[i]) : a->cell[i];
+		struct form *before = node->function != FN_CUMSUM ? sum->cell[0]
+				      : i			  ? sum->cell[i - 1]
+								  : NEW(struct form);
+		sum->cell[node->function == FN_CUMSUM ? i : 0] = form_sum(before, term, false);
+	}
+	return sum;
 }
 
 /* Whether a factor that no state changes is 0 */

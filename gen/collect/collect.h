@@ -102,6 +102,7 @@ struct collector {
 	bool whole_time;
 	bool closed;                /* for --solution */
 	bool output;                /* an output is being collected: highest derivatives may stand anywhere */
+	bool equation;              /* an equation is: with KEEP_ALL they may have factors of the state */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
 	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec, but for
@@ -146,14 +147,18 @@ bool oscillates(const struct forcing *forcing);
 
 /* ---- atom.c: what is not linear, as expressions that are shared wherever they are the same ---- */
 
-enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE, ATOM_PARAM };
+enum atom_kind { ATOM_PRODUCT, ATOM_RECIPROCAL, ATOM_POWER, ATOM_CALL, ATOM_COMPARE, ATOM_CHOOSE, ATOM_PARAM,
+		 ATOM_SOLUTION };
 struct verdict { signed char piecewise, stepwise; }; /* 1 and -1: is_piecewise_form, is_stepwise; 0: not asked yet */
 struct atom {
 	enum atom_kind kind;
 	enum function function;     /* of ATOM_CALL */
 	enum comparison comparison; /* of ATOM_COMPARE: two operands */
 	const struct symbol *param; /* of ATOM_PARAM: tunable; it has no operands, and counts as of time alone */
-	/* POWER: base, exponent; CHOOSE: condition, then, else; equal forms are one object */
+	int component;              /* of ATOM_SOLUTION: of n */
+	const struct written_system *written; /* NULL: there is none */
+	/* POWER: base, exponent; CHOOSE: condition, then, else; SOLUTION: the right side, then the matrix row by row;
+	 * equal forms are one object */
 	int operands;
 	const struct form **operand;
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
@@ -180,6 +185,9 @@ struct form *kept_call(struct collector *c, const struct node *node, enum functi
 		       struct form *const *x);
 struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison,
 			     const struct form *a, const struct form *b);
+/* Of any other kind, as it is */
+struct form *kept_operands(struct collector *c, const struct node *node, struct atom wanted, int count,
+			   const struct form *const *operand);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b);
 /* A node that calls a function where another one stands: for messages, which show the place */
@@ -199,6 +207,25 @@ bool is_of_time(const struct form *form);                   /* all of it depends
 bool is_friction(const struct atom *atom);                  /* NULL: none */
 struct form *time_part(const struct form *form, bool atoms); /* its terms of time alone; or of them the atoms only */
 
+/* ---- solution.c: solutions of linear equations ---- */
+
+/* Of highest derivatives: what they are, and residuals M x - f as they are written, which a series follows, since M and
+ * f multiplied out have more products */
+struct written_system {
+	int rows;
+	const struct basis *highest;
+	const struct form *const *residual;
+};
+struct linear_system {              /* M x = f, n x n, row by row */
+	int n;
+	const struct form *const *M, *const *f;
+	const struct written_system *written; /* NULL: there is none */
+};
+struct form *kept_solution(struct collector *c, const struct node *node, const struct linear_system *e, int component);
+/* Of such an atom, with these operands in the place of its own: written as another */
+struct linear_system system_of(const struct atom *atom, const struct form *const *operand);
+bool same_solution(const struct atom *a, const struct atom *b); /* of two such: they differ in the component alone */
+
 /* ---- calculus.c: derivatives of forms, and forms at a point ---- */
 
 struct fixing {                     /* a name that `operator at` fixes */
@@ -211,6 +238,11 @@ struct fixing {                     /* a name that `operator at` fixes */
 /* With respect to one state: a coordinate, or its velocity */
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, bool by_input, int index,
 			       int order);
+/* With respect to an operand of an atom, wherever it stands in it */
+struct form *form_partial(struct collector *c, const struct atom *atom, int operand);
+/* In time; `rate` gives that of a term that is no atom */
+struct form *form_rate(struct collector *c, const struct form *form,
+		       struct form *(*rate)(void *context, const struct form_term *term), void *context);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
 void point_at_values(struct point *point);                  /* tunable params have the spec's values there */

@@ -73,9 +73,9 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 	if (c->tolerant)
 		abandon();
 	const struct node *term = c->term ? c->term : node;
-	if (holds_acceleration(term))
+	if (holds_acceleration(term) && (keeps(c) || !c->equation))
 		error(term->start,
-		      "highest derivatives stand in every equation with constant factors: no scheme treats this",
+		      "highest derivatives stand in equations alone, which are linear in them for all time",
 		      "term '%s' %s", text_between(term->start, term->end), why);
 	if (c->closed)
 		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end),

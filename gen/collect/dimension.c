@@ -280,6 +280,9 @@ static struct dimension of_call(struct dimensions *w, const struct node *node)
 	struct dimension d, number = dimension_in(NULL);
 	number.bare = true;
 	switch (node->function) {
+	case FN_SUM:
+	case FN_CUMSUM: return dimension_of(w, node->child[0]);
+	case FN_DOT:  return of_product(w, node);
 	case FN_SQRT: return to_power(w, node->child[0], NULL, half);
 	case FN_ABS:  return dimension_of(w, node->child[0]);
 	case FN_MIN:

@@ -89,6 +89,11 @@ static struct dimension of_element(struct dimensions *w, const struct element *e
 	add_dimension(w, &force, &d, one);
 	if (e->kind == ELEMENT_FORCE || e->kind == ELEMENT_FRICTION)
 		return force;
+	if (e->kind == ELEMENT_ENERGY) {        /* over the coordinate */
+		mpq_set_si(one, -1, 1);
+		add_dimension(w, &force, &at, one);
+		return force;
+	}
 	RATIONAL order = RATIO(e->kind == ELEMENT_MASS ? -2 : e->kind == ELEMENT_DAMPER ? -1 : 0, 1);
 	add_dimension(w, &force, &at, one);
 	mpq_add(force.base[SECOND], force.base[SECOND], order);
@@ -133,6 +138,36 @@ static void add_elements(struct dimensions *w)
 						 e->value->start, force[k]);
 			}
 		}
+}
+
+/* Energies are alike, and a force at a point times its place is one; what is dissipated is one over time. */
+static void add_energies(struct dimensions *w)
+{
+	const struct spec *spec = w->spec;
+	RATIONAL one = RATIO(1, 1);
+	for (int i = 0; i < spec->energies; i++) {
+		const struct energy *e = &spec->energy[i];
+		w->statement = e;
+		int group = new_group(w, e->kind == 'D' ? "the dissipation" : "the energies");
+		struct dimension first = dimension_in(NULL), of_first = dimension_of(w, spec->energy[0].value);
+		if (spec->energy[0].point || of_first.kind != GIVEN)
+			return;
+		add_dimension(w, &first, &of_first, one);
+		if (e->kind == 'D')
+			mpq_sub(first.base[SECOND], first.base[SECOND], one);
+		if (i > 0)
+			add_term(&w->group[group], NULL, format("%c", spec->energy[0].kind), spec->energy[0].at, first);
+		for (int k = 0; k < (e->point ? e->point->children : 0); k++) {
+			struct dimension F = dimension_of(w, e->value->child[k]);
+			struct dimension r = dimension_of(w, e->point->child[k]);
+			if (F.kind != GIVEN || r.kind != GIVEN)
+				continue;
+			add_dimension(w, &F, &r, one);
+			add_term(&w->group[group], e->value->child[k], NULL, e->value->child[k]->start, F);
+		}
+		if (!e->point)
+			add_terms(w, group, e->value);
+	}
 }
 
 static void add_whens(struct dimensions *w)
@@ -460,6 +495,7 @@ static void check_all(void *context)
 	struct dimensions *w = context;
 	add_equations(w);
 	add_elements(w);
+	add_energies(w);
 	for (const struct symbol *s = w->spec->first; s; s = s->next)
 		if (!s->broken)
 			add_value(w, s);

@@ -42,7 +42,11 @@ static void banner_equations(const struct emitter *e)
 	for (int i = 0; i < spec->equations; i++)
 		say(e, " *     %s\n", written_text(equation[i].part, equation[i].at, equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
-		say(e, " *     %s\n", written_text(element[i].part, element[i].at, element[i].end));
+		if (element[i].kind != ELEMENT_ENERGY)
+			say(e, " *     %s\n", written_text(element[i].part, element[i].at, element[i].end));
+	for (int i = 0; i < spec->energies; i++)
+		if (energy_text(spec, i))
+			say(e, " *     %s\n", energy_text(spec, i));
 	for (int i = 0; i < spec->assembly.parts; i++)
 		if (parts_text(spec, i))
 			say(e, "%s%s.\n", i ? " *     and " : " *\n * Of parts: ", printable(parts_text(spec, i)));

@@ -62,18 +62,55 @@ static const char *number(const void *context, mpq_srcptr value)
 	return shortest(finite_number(context, value));
 }
 
-static struct tape *written_tape(const struct emitter *e)
+/* Left side minus right side of each equation, with its highest derivatives or without */
+static tape_ref *written_residuals(const struct emitter *e, struct tape *t, bool highest)
 {
 	const struct spec *spec = e->model->spec;
-	struct tape *t = tape_new();
-	struct tape_expressions *x = tape_expressions_new(t, spec->count.symbols, let_name, e);
+	struct tape_expressions *x = tape_expressions_new(t, spec->count.symbols, highest, let_name, e);
+	tape_ref *residual = ARRAY(tape_ref, spec->equations);
 	for (int i = 0; i < spec->equations; i++) {
 		tape_ref left = tape_expression(x, spec->equation[i].left), zero = tape_number(t, 0);
 		tape_ref right = tape_unary(t, TAPE_NEG, tape_expression(x, spec->equation[i].right));
-		tape_ref both = left == zero ? right : right == zero ? left : tape_binary(t, TAPE_ADD, left, right);
-		tape_set(t, residual(i), both, 10, NULL);
+		residual[i] = left == zero ? right : right == zero ? left : tape_binary(t, TAPE_ADD, left, right);
 	}
+	return residual;
+}
+
+/* dydt of the highest derivatives, where their factors depend on the state: by elimination on the tape */
+static void set_solved(const struct emitter *e, struct tape *t, const tape_ref *without)
+{
+	const struct linear *written = &e->model->written->system;
+	const int n = written->n, *owner = e->model->equations.owner;
+	const tape_ref *with = written_residuals(e, t, true), zero = tape_number(t, 0);
+	SCRATCH tape_ref *M = ARRAY(tape_ref, n * n), *right = ARRAY(tape_ref, n), *x = ARRAY(tape_ref, n);
+	for (int i = 0; i < n; i++) {
+		right[i] = tape_unary(t, TAPE_NEG, without[owner[i]]);
+		for (int j = 0; j < n; j++) {
+			int order = written->velocity[j] >= 0 ? 2 : 1;
+			tape_ref entry = tape_forward(t, with[owner[i]], TAPE_COORD, j, order);
+			M[i * n + j] = entry == zero ? TAPE_NONE : entry;
+		}
+	}
+	tape_solve(tape_factors_new(t, n, M), right, x);
+	for (int i = 0; i < n; i++)
+		tape_set(t, format("dydt[%d]", highest_state(written, i)), x[i], 10, NULL);
+}
+
+static struct tape *written_tape(const struct emitter *e)
+{
+	struct tape *t = tape_new();
+	const tape_ref *without = written_residuals(e, t, false);
+	if (e->model->equations.moving_mass)
+		set_solved(e, t, without);
+	for (int i = 0; i < e->model->spec->equations && !e->model->equations.moving_mass; i++)
+		tape_set(t, residual(i), without[i], 10, NULL);
 	return t;
+}
+
+/* Whether the program of the equations' text solves them too */
+static bool solves(const struct emitter *e)
+{
+	return e->model->equations.moving_mass && is_scalar_text(e->model->written);
 }
 
 static void emit_read_params(const struct emitter *e, const struct tape *t)
@@ -189,8 +226,9 @@ static struct read emit_collected_residuals(const struct emitter *e)
 static struct read emit_residuals(const struct emitter *e)
 {
 	struct read read = { false, false, false };
-	say(e, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n",
-	    e->model->written->n);
+	if (!solves(e))
+		say(e, "    double residual[%d];  /* left side minus right side, without the highest derivatives */\n",
+		    e->model->written->n);
 	if (!is_scalar_text(e->model->written))
 		return emit_collected_residuals(e);
 	struct tape *t = written_tape(e);
@@ -232,6 +270,8 @@ static void emit_derivatives(const struct emitter *e)
 	for (int i = 0; i < n; i++)
 		if (written->velocity[i] >= 0)
 			say(e, "    dydt[%d] = y[%d];\n", i, written->velocity[i]);
+	if (solves(e))
+		return;
 	for (int i = 0; i < n; i++) {
 		struct summands s = { 0 };
 		for (int j = 0; j < n; j++)

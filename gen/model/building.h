@@ -39,6 +39,8 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct form **element;      /* per element of the network: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
 	struct impact_law **impact_law; /* per `when` and stop; NULL: it has been told */
+	int masses;                 /* blocks of equations in which the mass matrix moves */
+	struct moving_mass { const struct node *node; struct linear_system system; } *mass;
 };
 
 /* ---- equations.c: equations and sketches to residuals ---- */

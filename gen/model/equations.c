@@ -3,11 +3,14 @@
 #include "building.h"
 #include "model/contacts/friction.h"
 #include "model/linear/relative.h"
+#include "lagrange.h"
+#include "state_mass.h"
 
 struct indexed {
 	struct building *b;
 	struct segment_equations *segment_equations;
 	int index;
+	struct form **terms;        /* per coordinate: of the energies */
 };
 
 /* ---- collection ---- */
@@ -59,6 +62,10 @@ static void collect_element(void *context)
 	struct indexed *work = context;
 	struct building *b = work->b;
 	const struct element *element = &b->spec->element[work->index];
+	if (element->kind == ELEMENT_ENERGY) {
+		work->segment_equations->element[work->index] = work->terms[component_of(element->from)];
+		return;
+	}
 	struct value *value = collect(&b->collector, element->value);
 	if (value->rows != 1 || value->columns != 1)
 		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows,
@@ -86,13 +93,16 @@ static void collect_element(void *context)
 void collect_equations(struct building *b, struct segment_equations *segment_equations)
 {
 	const int *changes = &b->collector.changes, known = *changes;
+	b->collector.equation = true;
 	for (int i = 0; i < b->spec->equations && *changes == known; i++)
 		if (b->spec->equation[i].right)
-			statement_guard(collect_equation, &(struct indexed){ b, segment_equations, i });
+			statement_guard(collect_equation, &(struct indexed){ b, segment_equations, i, NULL });
 	segment_equations->written = segment_equations->residuals;
 	segment_equations->element = ARRAY(struct form *, b->spec->elements);
+	struct form **terms = b->spec->energies && *changes == known ? lagrange_terms(b) : NULL;
 	for (int i = 0; i < b->spec->elements && *changes == known; i++)
-		statement_guard(collect_element, &(struct indexed){ b, segment_equations, i });
+		statement_guard(collect_element, &(struct indexed){ b, segment_equations, i, terms });
+	b->collector.equation = false;
 }
 
 /* ---- where a derivative stands ---- */
@@ -139,7 +149,7 @@ static const struct element *find_mass(const struct spec *spec, int coord)
 /* A coordinate is of second order if its acceleration stands in an equation or a mass at it. */
 int find_order(const struct spec *spec, int coord)
 {
-	return find_mass(spec, coord) || find_in_equations(spec, coord, 2) ? 2 : 1;
+	return find_mass(spec, coord) || has_kinetic_energy(spec, coord) || find_in_equations(spec, coord, 2) ? 2 : 1;
 }
 
 /* ---- does each coordinate have its equation? ---- */
@@ -181,9 +191,12 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 {
 	if (choice == UNTOUCHED && is_sketched(b, coord))
 		return false;
-	int order = choice == ANY && find_mass(b->spec, coord) ? -1 : order_of(b->model, coord);
+	bool given = choice == ANY && (find_mass(b->spec, coord) || has_kinetic_energy(b->spec, coord));
+	int order = given ? -1 : order_of(b->model, coord);
 	const struct form *form = b->segment_equations->residual[row].form;
-	return has_coordinate_of_order(form, coord, order) || (order == 1 && has_slider(b, form, coord));
+	return has_coordinate_of_order(form, coord, order) ||
+	       (order == order_of(b->model, coord) && has_highest_within(b, form, coord)) ||
+	       (order == 1 && has_slider(b, form, coord));
 }
 
 /* An augmenting path of the bipartite matching from equation `row`. */
@@ -301,6 +314,7 @@ void add_elements(struct building *b, struct segment_equations *s)
 	resolve_sliders(b, s);
 	if (relative)
 		combine_residuals(b, s);
+	solve_for_highest(b, s);
 }
 
 /* ---- the mass matrix ---- */
@@ -321,8 +335,10 @@ static void report_singular(const struct building *b, int coord)
 	const struct node *highest = find_in_equations(b->spec, coord, order);
 	const struct element *mass = find_mass(b->spec, coord);
 	struct place at = highest ? highest->at : mass ? mass->at : model->frame.coord[coord]->at;
-	if (!highest && !mass)
-		say_error(at, "every coordinate needs a mass, or a first derivative",
+	if (!highest && !mass && !has_kinetic_energy(b->spec, coord))
+		say_error(at,
+			  b->spec->energies ? "every coordinate needs a mass: it stands in no kinetic energy T"
+					    : "every coordinate needs a mass, or a first derivative",
 			  "singular mass matrix: no derivative of %s stands in an equation", model->names.coord[coord]);
 	else if (zero_column(model, coord))
 		say_error(at, "every coordinate needs a mass", "singular mass matrix: the factor of %s is 0",

@@ -93,7 +93,7 @@ static void check_elements(struct lint *lint)
 	RATIONAL value = ZERO;
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
-		if (element->kind == ELEMENT_FORCE || !constant_of_node(b, element->value, value) ||
+		if (element->kind >= ELEMENT_FORCE || !constant_of_node(b, element->value, value) ||
 		    mpq_sgn(value) >= 0)
 			continue;
 		say_warning(element->value->start, NULL, "a negative %s, %s", what[element->kind],

@@ -2,6 +2,7 @@
 /* Which scheme the equations allow: exact, exact in regions, or one that leaves something over. */
 #include "building.h"
 #include "capability.h"
+#include "state_mass.h"
 #include "checks.h"
 #include "model/contacts/contacts.h"
 #include "model/contacts/friction.h"
@@ -59,7 +60,7 @@ static void report_change(void *context)
 	struct building *b = work->b;
 	const struct spec *spec = b->spec;
 	for (int i = 0; i < spec->elements; i++)
-		if (spec->element[i].kind != ELEMENT_FORCE && spec->element[i].kind != ELEMENT_FRICTION &&
+		if (spec->element[i].kind < ELEMENT_FORCE &&
 		    !same_in_states(b->segment_equations[0].element[i], work->segment_equations->element[i]))
 			error(spec->element[i].value->start, "what moves belongs in an equation, or in a force",
 			      "a mass, spring or damper needs a constant");
@@ -280,7 +281,7 @@ static bool goes_by_series(const struct building *b)
 	const struct model *model = b->model;
 	bool chosen = !model->request.scheme_at.source && !is_piecewise_linear(b);
 	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
-	       !b->request->loads_left;
+	       !b->request->loads_left && !model->equations.moving_mass;
 }
 
 static bool goes_by_regions(const struct building *b)
@@ -413,6 +414,8 @@ void build_system(struct building *b)
 	model->equations.residual = rows->residual;
 	model->equations.segment_equations = b->segment_equations;
 	model->equations.full = b->full;
+	if (b->full && !diagnostics_errors())
+		check_mass_at_start(b);
 	if (b->full && !diagnostics_errors())
 		prefer_stiff(b);
 }

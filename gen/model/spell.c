@@ -112,6 +112,7 @@ static const char *spell_atom(struct spelling *s, const struct atom *a)
 		return format("%s^%s", first, spell_operand(s, a->operand[1]));
 	case ATOM_CALL:       return spell_call(s, a);
 	case ATOM_PARAM:      return a->param->name;
+	case ATOM_SOLUTION:   return format("(M^-1 f)[%d]", a->component + 1);
 	case ATOM_COMPARE:
 		first = spell_form(s, a->operand[0]);
 		return format("%s %s %s", first, sign[a->comparison], spell_form(s, a->operand[1]));

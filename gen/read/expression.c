@@ -206,7 +206,7 @@ struct node *read_state(struct parser *p)
 static void check_arguments(const struct node *call)
 {
 	bool three = call->function == FN_DEADZONE || call->function == FN_CLIP;
-	int wanted = call->function == FN_ATAN2 ? 2 : three ? 3 : 1;
+	int wanted = call->function == FN_ATAN2 || call->function == FN_DOT ? 2 : three ? 3 : 1;
 	if (call->function == FN_FRICTION && (call->children < 2 || call->children > 3))
 		error(call->at, "friction(v, F), or friction(v, F, S) where S is what it holds up to",
 		      "friction takes a velocity and a force, found %d argument%s", call->children,
@@ -291,6 +291,19 @@ static struct node *read_matrix(struct parser *p)
 	return node;
 }
 
+/* At a bracket: dot(x) is meant for a derivative. */
+static bool has_two_arguments(const struct parser *p)
+{
+	const char *text = p->token.at.source->text + p->token.at.offset;
+	int depth = 0;
+	for (; *text && *text != '\n'; text++) {
+		depth += (*text == '(' || *text == '[') - (*text == ')' || *text == ']');
+		if (depth <= 1 && (depth == 0 || *text == ','))
+			return depth == 1;
+	}
+	return false;
+}
+
 /* operand: NUMBER | pi | t | name | call | ( expression ) | matrix */
 static struct node *read_operand(struct parser *p)
 {
@@ -310,6 +323,10 @@ static struct node *read_operand(struct parser *p)
 	struct token name = take(p);
 	enum function function = function_of(name.name);
 	if (function != FN_NONE && (function != FN_FRICTION || (is_op(p, "(") && !find_symbol(p, name.name))))
+		return read_call(p, name, function);
+	function = vector_function_of(name.name);
+	if (function != FN_NONE && is_op(p, "(") && !name.primes && !find_symbol(p, name.name) &&
+	    (function != FN_DOT || has_two_arguments(p)))
 		return read_call(p, name, function);
 	bool time = strcmp(name.name, "t") == 0;
 	if (time || strcmp(name.name, "pi") == 0) {

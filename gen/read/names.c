@@ -10,7 +10,7 @@ static const char *const function_names[] = {
 #define REAL_FUNCTION(NAME, name, argument, value, low, high) #name,
 #include "read/functions.def"
 #undef REAL_FUNCTION
-	"atan2", "abs", "sgn", "min", "max", "deadzone", "clip", "table", "friction"
+	"atan2", "abs", "sgn", "min", "max", "deadzone", "clip", "table", "friction", "", "sum", "cumsum", "dot"
 };
 
 /* Statements; what the language has else */
@@ -152,6 +152,14 @@ const char *function_name(enum function function)
 enum function function_of(const char *name)
 {
 	for (int f = FN_SIN; f <= FN_FRICTION; f++)
+		if (strcmp(name, function_names[f]) == 0)
+			return (enum function)f;
+	return FN_NONE;
+}
+
+enum function vector_function_of(const char *name)
+{
+	for (int f = FN_SUM; f <= FN_DOT; f++)
 		if (strcmp(name, function_names[f]) == 0)
 			return (enum function)f;
 	return FN_NONE;

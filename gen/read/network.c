@@ -2,6 +2,8 @@
 /* Sketches: masses, springs, dampers and what else is drawn between coordinates. */
 #include "read/parser.h"
 
+#include <string.h>
+
 /* The velocity of a coordinate that has been read */
 static struct node *velocity_of(const struct node *coordinate)
 {
@@ -39,6 +41,11 @@ static void read_element(struct parser *p, int kind)
 	struct element element = { .kind = kind, .part = p->part };
 	element.at = (struct place){ p->lexer.source, p->statement };
 	element.value = read_quantity(p);
+	const bool at = p->token.kind == TOKEN_NAME && strcmp(p->token.name, "at") == 0;
+	if (kind == ELEMENT_FORCE && (at || is_op(p, ","))) {
+		read_point_force(p, element.value);
+		return;
+	}
 	expect_word(p, kind == ELEMENT_MASS ? "at" : kind == ELEMENT_FORCE ? "on" : "between");
 	bool two = kind == ELEMENT_SPRING || kind == ELEMENT_DAMPER || kind == ELEMENT_FRICTION;
 	struct token first = p->token;

@@ -21,7 +21,8 @@ static const struct statement {
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
-	{ "when", read_when }, { "stop", read_stop }, { "range", read_range }
+	{ "energy", read_energy }, { "dissipation", read_dissipation }, { "when", read_when }, { "stop", read_stop },
+	{ "range", read_range }
 };
 
 /* tolerance, substeps, modes, use, need, budget, when, stop and range may be names of a spec's own: in an equation

@@ -118,6 +118,12 @@ void read_damper(struct parser *p);
 void read_force(struct parser *p);
 void read_friction(struct parser *p);
 
+/* ---- energy.c ---- */
+
+void read_energy(struct parser *p);
+void read_dissipation(struct parser *p);
+void read_point_force(struct parser *p, struct node *first);
+
 /* ---- when.c ---- */
 
 void read_when(struct parser *p);

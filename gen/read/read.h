@@ -65,7 +65,8 @@ enum function {
 	FN_ATAN2,                   /* of two numbers; those behind it are piecewise */
 	FN_ABS, FN_SGN, FN_MIN, FN_MAX, FN_DEADZONE, FN_CLIP, FN_TABLE,
 	FN_FRICTION,
-	FN_SLIDE                    /* of no text: the velocity of a slider without mass, by what it bears and holds */
+	FN_SLIDE,                   /* of no text: the velocity of a slider without mass, by what it bears and holds */
+	FN_SUM, FN_CUMSUM, FN_DOT   /* of vectors */
 };
 enum comparison { CMP_LT, CMP_LE, CMP_GT, CMP_GE, CMP_EQ, CMP_NE };
 enum node_kind {
@@ -94,6 +95,7 @@ struct node {
 	int children;
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
+	bool each;                  /* of PRODUCT: of vectors component by component */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
 	const struct unit *unit;    /* of a SUM of one child: what stands behind it; else NULL */
 	bool counted;               /* the child is a number of these, times its factor; else it comes out in it */
@@ -154,10 +156,17 @@ struct equation {
 	struct node *left, *right;
 };
 struct element {                    /* of a network */
-	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE, ELEMENT_FRICTION } kind;
+	/* ELEMENT_ENERGY: what the energies say of a coordinate, for which there is no text of its own */
+	enum { ELEMENT_MASS, ELEMENT_SPRING, ELEMENT_DAMPER, ELEMENT_FORCE, ELEMENT_FRICTION, ELEMENT_ENERGY } kind;
 	const struct assembly_part *part; /* whose text has it; NULL: the assembly's */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
+};
+struct energy {                     /* or the force at a point */
+	char kind;                  /* 'T', 'V', 'D'; 'Q': components `value` of a force at the point `point` */
+	const struct assembly_part *part;
+	struct place at, end;
+	struct node *value, *point;
 };
 struct state_jump {                 /* of `when`: state = value just behind it */
 	struct node *target, *value;
@@ -281,6 +290,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct equation *equation;
 	int elements;
 	struct element *element;
+	int energies;
+	struct energy *energy;
 	int whens;                      /* in the order in which they act at one instant */
 	struct when *when;
 	struct { int files; const char **file; } data;  /* for the dependency file */
@@ -307,6 +318,10 @@ void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
 
+/* ---- energy.c: equations from energies ---- */
+
+void add_energy_elements(struct spec *spec);                /* one for each coordinate that they name, at the end */
+bool has_kinetic_energy(const struct spec *spec, int component); /* then the coordinate is of second order */
 /* ---- params.c: other values of params than the spec's ---- */
 
 struct definition {
@@ -336,6 +351,8 @@ void read_parts_from(const char *folder);                   /* those that come w
 
 /* an equation or element: front: M*x'' = 0 */
 const char *written_text(const struct assembly_part *part, struct place at, struct place end);
+/* of the statement of an energy; NULL: that of the one before it */
+const char *energy_text(const struct spec *spec, int index);
 /* axle.spec as front, rear; NULL: it is told with a part before it */
 const char *parts_text(const struct spec *spec, int index);
 
@@ -345,6 +362,7 @@ bool is_reserved(const char *name);                         /* words that a user
 const char *prefix_objection(const char *name);             /* why it cannot name generated code, or NULL */
 size_t name_hash(const char *name);
 enum function function_of(const char *name);
+enum function vector_function_of(const char *name);         /* whose names are no reserved words */
 const char *function_name(enum function function);
 const char *nearest_name(const char *name, int count, const char *const *known); /* or NULL */
 /* a note with the nearest known name, or NULL */

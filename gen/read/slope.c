@@ -44,6 +44,7 @@ static struct node *times(struct node *factor, struct node *slope)
 	if (is_zero(slope))
 		return slope;
 	struct node *product = like(slope, NODE_PRODUCT);
+	product->each = true;
 	append(product, factor, false);
 	append(product, slope, false);
 	return product;
@@ -59,6 +60,7 @@ static struct node *negative(struct node *node)
 static struct node *quotient(struct node *above, struct node *below)
 {
 	struct node *made = like(above, NODE_PRODUCT);
+	made->each = true;
 	append(made, above, false);
 	append(made, below, true);
 	return made;
@@ -129,6 +131,21 @@ static struct node *slope_of_power(struct node *node, struct place at)
 	return times(exponent, times(power, base));
 }
 
+/* (a . b)' = a' . b + a . b' */
+static struct node *slope_of_dot(struct node *node, struct place at)
+{
+	struct node *sum = like(node, NODE_SUM);
+	for (int i = 0; i < 2; i++) {
+		struct node *slope = slope_of(node->child[i], at);
+		if (is_zero(slope))
+			continue;
+		struct node *product = call(node, FN_DOT, i ? node->child[0] : slope);
+		append(product, i ? slope : node->child[1], false);
+		append(sum, product, false);
+	}
+	return sum;
+}
+
 static struct node *slope_of_call(struct node *node, struct place at)
 {
 	struct node *x = node->child[0], *inner = slope_of(x, at);
@@ -138,6 +155,9 @@ static struct node *slope_of_call(struct node *node, struct place at)
 	if (constant)
 		return number(node, 0);
 	switch (node->function) {
+	case FN_SUM:
+	case FN_CUMSUM: return call(node, node->function, inner);
+	case FN_DOT:  return slope_of_dot(node, at);
 	case FN_SIN:  return times(call(node, FN_COS, x), inner);
 	case FN_COS:  return negative(times(call(node, FN_SIN, x), inner));
 	case FN_SINH: return times(call(node, FN_COSH, x), inner);

@@ -160,6 +160,8 @@ static bool has_velocity(const struct spec *spec, const struct symbol *coord)
 		found = accelerates(spec->equation[i].left, coord) || accelerates(spec->equation[i].right, coord);
 	for (int i = 0; i < spec->elements && !found; i++)
 		found = spec->element[i].kind == ELEMENT_MASS && spec->element[i].from->symbol == coord;
+	for (int i = 0; i < (coord->length ? coord->length : 1) && !found; i++)
+		found = has_kinetic_energy(spec, coord->index + i);
 	return found;
 }
 

@@ -290,8 +290,9 @@ struct spec *parse_spec(const struct source *source)
 {
 	open_assembly(source);
 	struct spec *spec = parse_whole(source, &reader);
-	if (spec->assembly.parts && !diagnostics_errors())
-		leave_unobservable(spec);
+	if (spec->assembly.parts && !spec->energies && !diagnostics_errors())
+		leave_unobservable(spec);       /* energies tie together what stands in them */
+	add_energy_elements(spec);
 	return spec;
 }
 
@@ -301,6 +302,13 @@ const char *written_text(const struct assembly_part *part, struct place at, stru
 {
 	const char *text = text_between(at, end);
 	return part ? format("%s: %s", part->name, text) : text;
+}
+
+const char *energy_text(const struct spec *spec, int index)
+{
+	const struct energy *e = &spec->energy[index];
+	const bool begins = index == 0 || e[-1].at.offset != e->at.offset || e[-1].at.source != e->at.source;
+	return begins ? written_text(e->part, e->at, e->end) : NULL;
 }
 
 /* Parts of one file, all modelled or none, are told together at the first of them. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived: for a person, and as JSON for a program. */
+#include "model/state_mass.h"
 #include "model/building.h"
 #include "model/reads.h"
 #include "report/report.h"
@@ -347,13 +348,17 @@ void text_equations(FILE *to, const struct step *step)
 		fprintf(to, "    %s\n",
 			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));
 	for (int i = 0; i < spec->elements; i++)
-		fprintf(to, "    %s\n",
-			written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
+		if (spec->element[i].kind != ELEMENT_ENERGY)
+			fprintf(to, "    %s\n",
+				written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
+	for (int i = 0; i < spec->energies; i++)
+		if (energy_text(spec, i))
+			fprintf(to, "    %s\n", energy_text(spec, i));
 	text_assembly(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)
-			fprintf(to, "    %s\n", equation_text(model->written, model->equations.residual[i].form));
+			fprintf(to, "    %s\n", equation_text(model->written, residual_as_written(model, i)));
 	}
 }
 

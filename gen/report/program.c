@@ -392,6 +392,7 @@ static const char *sequence_definition(const struct step *step, const struct seq
 	case SEQUENCE_QUOTIENT: return format("%s / %s", a, b);
 	case SEQUENCE_ROOT:	return format("sqrt(%s)", a);
 	case SEQUENCE_POWER:	return format("%s ^ %s", a, shortest(s->exponent));
+	case SEQUENCE_SOLUTION: return format("component %d of %d linear equations", s->component + 1, s->equations->n);
 	case SEQUENCE_RATE:	return format("the derivative of %s", a);
 	case SEQUENCE_CHOICE:	return format("%s or %s, by %s", a, b, chooser_text(step, s));
 	default:

@@ -403,6 +403,14 @@ static void count_joined(const struct expansion *x, const struct sequence *s, in
 	}
 }
 
+/* Its share of the factors, of the solution, and of its residual's part that the solution of this order is not in */
+static void count_solution(const struct sequence *s, int k, struct program *p)
+{
+	int n = s->equations->n, products = n + (k == 0 ? n * (n + 1) / 6 + 1 : 0);
+	p->multiplications += products;
+	p->additions += products;
+}
+
 static void count_sequence(const struct expansion *x, const struct sequence *s, int k, struct program *p)
 {
 	int from = s->kind == SEQUENCE_INTEGRAL ? k - 1 : k;
@@ -433,6 +441,9 @@ static void count_sequence(const struct expansion *x, const struct sequence *s, 
 		break;
 	case SEQUENCE_RATE:
 		p->multiplications++;
+		break;
+	case SEQUENCE_SOLUTION:
+		count_solution(s, k, p);
 		break;
 	case SEQUENCE_CHOICE:
 		break;

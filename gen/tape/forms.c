@@ -10,6 +10,8 @@ struct tape_forms {
 	tape_ref *made;             /* per atom; TAPE_NONE: not yet */
 	int lets;
 	const struct tape_let *let;
+	int solutions;
+	struct { const struct atom *atom; tape_ref *x; } *solution; /* all components at once */
 };
 
 /* ---- what is read how often ---- */
@@ -265,6 +267,35 @@ static tape_ref nominal_ref(struct tape *t, const struct symbol *param)
 	return tape_constant(t, value);
 }
 
+/* A form that is 0 takes no operation. */
+static tape_ref entry_ref(struct tape_forms *f, const struct form *form)
+{
+	return form->terms ? tape_form(f, form) : TAPE_NONE;
+}
+
+static tape_ref solution_ref(struct tape_forms *f, const struct atom *a)
+{
+	const struct linear_system e = system_of(a, a->operand);
+	int known = 0;
+	while (known < f->solutions && !same_solution(f->solution[known].atom, a))
+		known++;
+	if (known == f->solutions) {
+		SCRATCH tape_ref *M = ARRAY(tape_ref, e.n * e.n), *right = ARRAY(tape_ref, e.n);
+		tape_ref *x = ARRAY(tape_ref, e.n);
+		for (int i = 0; i < e.n * e.n; i++)
+			M[i] = entry_ref(f, e.M[i]);
+		for (int i = 0; i < e.n; i++)
+			right[i] = entry_ref(f, e.f[i]);
+		tape_solve(tape_factors_new(f->tape, e.n, M), right, x);
+		known = f->solutions;           /* operands may have been solutions themselves */
+		ENLARGE(f->solution, (size_t)known + 1);
+		f->solution[known].atom = a;
+		f->solution[f->solutions++].x = x;
+	}
+	tape_ref x = f->solution[known].x[a->component];
+	return x == TAPE_NONE ? tape_number(f->tape, 0) : x;
+}
+
 static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 {
 	struct tape *t = f->tape;
@@ -278,6 +309,7 @@ static tape_ref new_atom_ref(struct tape_forms *f, const struct atom *a)
 		x = tape_form(f, a->operand[0]);
 		return tape_binary(t, TAPE_POWER, x, tape_form(f, a->operand[1]));
 	case ATOM_CALL:       return call_ref(f, a);
+	case ATOM_SOLUTION:   return solution_ref(f, a);
 	case ATOM_COMPARE:    return tape_select(t, comparison_ref(f, a), tape_number(t, 1), tape_number(t, 0));
 	default:
 		condition = tape_condition(f, a->operand[0]);

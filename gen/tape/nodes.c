@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Expressions of a spec as they are written, as nodes of a tape; an acceleration counts as 0. */
+/* Expressions of a spec as they are written, as nodes of a tape; highest derivatives count as 0 unless they are asked
+ * for. */
 #include "tape/tape.h"
 
 struct tape_expressions {
 	struct tape *tape;
+	bool highest;
 	const char *(*let_name)(const void *context, const struct symbol *let);
 	const void *context;
 	tape_ref *let;              /* by the symbols' numbers; UNMADE: not yet */
 };
 enum { UNMADE = -2 };               /* beside TAPE_NONE: nothing is left of it when accelerations are 0 */
 
-struct tape_expressions *tape_expressions_new(struct tape *t, int symbols,
+struct tape_expressions *tape_expressions_new(struct tape *t, int symbols, bool highest,
 					      const char *(*let_name)(const void *context, const struct symbol *let),
 					      const void *context)
 {
 	struct tape_expressions *x = NEW(struct tape_expressions);
-	*x = (struct tape_expressions){ .tape = t, .let_name = let_name, .context = context };
+	*x = (struct tape_expressions){ .tape = t, .highest = highest, .let_name = let_name, .context = context };
 	x->let = ARRAY(tape_ref, symbols + 1);
 	for (int i = 0; i <= symbols; i++)
 		x->let[i] = UNMADE;
@@ -151,7 +153,9 @@ static tape_ref name(struct tape_expressions *x, const struct node *node)
 	case SYMBOL_INPUT: return tape_operand(x->tape, TAPE_INPUT, place, node->primes);
 	default:           break;
 	}
-	return node->primes == s->highest ? TAPE_NONE : tape_operand(x->tape, TAPE_COORD, place, node->primes);
+	if (node->primes == s->highest && !x->highest)
+		return TAPE_NONE;
+	return tape_operand(x->tape, TAPE_COORD, place, node->primes);
 }
 
 static tape_ref read_node(struct tape_expressions *x, const struct node *node)

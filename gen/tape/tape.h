@@ -127,12 +127,19 @@ tape_ref tape_form_in_time(struct tape *t, const struct form *form);
 tape_ref tape_condition(struct tape_forms *f, const struct form *condition);
 void tape_name_lets(struct tape_forms *f);      /* once all forms are in */
 
+/* ---- solve.c: linear equations ---- */
+
+struct tape_factors;
+/* Of M, n x n, row by row; TAPE_NONE: the entry is 0 for all states. Rows are eliminated in their order. */
+struct tape_factors *tape_factors_new(struct tape *t, int n, const tape_ref *M);
+void tape_solve(const struct tape_factors *f, const tape_ref *right, tape_ref *x);
+
 /* ---- nodes.c: expressions as they are written ---- */
 
 /* Operands: TAPE_COORD and TAPE_INPUT by the place of a component, TAPE_PARAM by the symbol's number, TAPE_TIME. A
- * highest derivative counts as 0. */
+ * highest derivative is one too if `highest`, else it counts as 0. */
 struct tape_expressions;
-struct tape_expressions *tape_expressions_new(struct tape *t, int symbols,
+struct tape_expressions *tape_expressions_new(struct tape *t, int symbols, bool highest,
 					      const char *(*let_name)(const void *context, const struct symbol *let),
 					      const void *context);
 tape_ref tape_expression(struct tape_expressions *x, const struct node *node);

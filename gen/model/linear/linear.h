@@ -49,6 +49,7 @@ struct equations {                  /* as they are written */
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
 	const struct atoms *atoms;
+	const struct node *moving_mass; /* a term by which the mass matrix is not constant; NULL: it is */
 	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
 	const char *linearised, *point;
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */

@@ -248,6 +248,7 @@ static struct form *atom_on_side(struct side *s, const struct atom *a)
 {
 	struct collector *c = s->c;
 	struct form **x = ARRAY(struct form *, a->operands), *product = form_number(1);
+	struct linear_system equations;
 	for (int i = 0; i < a->operands; i++)
 		x[i] = form_on_side(s, a->operand[i]);
 	struct decided d = a->kind == ATOM_CHOOSE ? decide(s, x[0]) : (struct decided){ false, 0, NULL };
@@ -260,6 +261,9 @@ static struct form *atom_on_side(struct side *s, const struct atom *a)
 	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
 	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
 	case ATOM_CALL:       return call_on_side(s, a, x);
+	case ATOM_SOLUTION:
+		equations = system_of(a, (const struct form *const *)x);
+		return kept_solution(c, a->node, &equations, a->component);
 	case ATOM_COMPARE:    return comparison_on_side(s, a, x);
 	default:              return d.known && !d.rest ? x[d.sign ? 1 : 2] : kept_choice(c, a->node, x[0], x[1], x[2]);
 	}

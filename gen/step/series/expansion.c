@@ -44,6 +44,9 @@ static bool raise_operands(struct expansion *x, const struct sequence *s)
 		changed |= raise(x, s->a, 0) | raise(x, s->b, 0);
 	if (s->kind == SEQUENCE_CHOICE && s->choice == CHOICE_BY_SEQUENCE)
 		changed |= raise(x, s->test, 0);
+	for (int i = 0; s->equations && i < s->equations->n * (s->equations->n + 1); i++)
+		changed |= raise(x, i < s->equations->n ? s->equations->right[i]
+							: s->equations->matrix[i - s->equations->n], 0);
 	return changed;
 }
 
@@ -150,6 +153,8 @@ static void count_uses(struct sequencing *w, const struct form *form)
 			continue;
 		for (int k = 0; k < atom->operands; k++)
 			count_uses(w, atom->operand[k]);
+		for (int k = 0; atom->written && k < atom->written->rows; k++)
+			count_uses(w, atom->written->residual[k]);
 	}
 }
 
@@ -174,6 +179,9 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 		w->slopes[k] = augmented_matrix(&w->layout, system, k);
 	for (int e = 0; e < model->remainder.force_columns; e++)
 		count_uses(w, model->schedule.operator[0].left[e]);
+	w->highest = ARRAY(int, system->n);
+	for (int j = 0; j < system->n; j++)
+		w->highest[j] = NONE;
 	start_states(w);
 	hold_contacts(w);
 	if (with_forces)
@@ -207,7 +215,7 @@ struct expansion *part_of_expansion(const struct step *step, const struct expans
 	struct expansion *x = NEW(struct expansion);
 	*x = (struct expansion){ .order = order, .count = full->count, .functions = full->functions,
 				 .function = full->function, .columns = columns, .column = column, .alone = true,
-				 .slots = full->slots };
+				 .slots = full->slots, .equations = full->equations };
 	x->sequence = ARRAY(struct sequence, x->count);
 	x->column_top = ARRAY(int, x->columns);
 	for (int i = 0; i < x->count; i++)

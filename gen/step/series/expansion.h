@@ -15,6 +15,7 @@ struct expansion {
 	int order;                  /* of the series in its unit of time, h or several of them */
 	int count;                  /* sequences; the first are the states */
 	struct sequence *sequence;
+	int equations;              /* systems of linear equations that are solved for each k */
 	int slots;                  /* factors that change from segment to segment: */
 	double *changing;           /* [slot][segment][k] */
 	bool *load;                 /* per load: read */

@@ -11,8 +11,11 @@ enum { FEW = 2, ENOUGH = 4 };           /* others that a split sequence follows 
 /* What its k-th is made of, the terms of a sum first; of an integral that is what its derivative is */
 int sequence_operands(const struct sequence *s, int **operand)
 {
+	const struct linear_equations *e = s->equations;
 	int count = 0;
-	*operand = ARRAY(int, 2 * s->terms + 2);
+	*operand = ARRAY(int, 2 * s->terms + 2 + (e ? e->n : 0));
+	for (int i = 0; e && i < e->n; i++)
+		(*operand)[count++] = e->residual[i];
 	for (int k = 0; k < s->terms; k++) {
 		const struct sequence_term *t = &s->term[k];
 		if (t->kind == TERM_SEQUENCE || t->kind == TERM_PRODUCT)
@@ -45,6 +48,11 @@ static bool is_state(const struct sequence *s)
 static bool is_late(const struct sequence *s)
 {
 	return s->kind == SEQUENCE_RATE;
+}
+
+static bool is_solution(const struct sequence *s)
+{
+	return s->kind == SEQUENCE_SOLUTION;
 }
 
 /* Those that are so, and those made of them; through integrals or not */
@@ -97,7 +105,7 @@ static void find_gains(const struct expansion *x, const bool *depends, const boo
 	SCRATCH int *operand = NULL;
 	bool sum = s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL;
 	bool made = sum || s->kind == SEQUENCE_QUOTIENT || s->kind == SEQUENCE_ROOT || s->kind == SEQUENCE_POWER;
-	if (!made || !depends[index] || late[index] || is_any(late, s))
+	if (!made || !depends[index] || late[index] || is_any(late, s) || s->solved)
 		return;
 	int operands = sequence_operands(s, &operand);
 	for (int i = 0; i < operands; i++)
@@ -171,9 +179,11 @@ static void schedule(const struct expansion *x)
 /* Sums before what they are in come first: operands are made before what is made of them, but for integrals. */
 void find_implicit(struct expansion *x)
 {
-	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false);
+	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false),
+		   *solved = made_of(x, is_solution, false);
 	for (int i = 0; i < x->count; i++) {
 		x->sequence[i].known = !depends[i];
+		x->sequence[i].solved = solved[i] && !is_solution(&x->sequence[i]);
 		if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
 			find_gains(x, depends, late, i);
 	}

@@ -14,9 +14,15 @@ struct recurrences {
 	const struct expansion *x;
 	struct series_names names;
 	struct tape *t;
-	tape_ref *made, *early;     /* [sequence][k] */
+	tape_ref *made, *early, *update; /* [sequence][k] */
 	tape_ref *helper, *size;    /* per sequence: its inverse or half; of what its value is summed from */
 	tape_ref **gain;            /* [sequence][gain] */
+	struct solved *solved;      /* per system of linear equations */
+};
+
+struct solved {                     /* factors of the matrix at the start, which serve all k */
+	struct tape_factors *factors;
+	tape_ref *x;                /* [k][component]; UNKNOWN: not made yet */
 };
 
 static const struct sequence *sequence_of(const struct recurrences *r, int sequence)
@@ -169,6 +175,37 @@ static void add_term(struct recurrences *r, struct list *sum, struct list *last,
 	}
 }
 
+/* ---- choices ---- */
+
+/* By interval[], or by the numbers themselves */
+static tape_ref condition(struct recurrences *r, const struct sequence *s)
+{
+	struct tape *t = r->t;
+	if (s->choice == CHOICE_BY_TIME) {
+		tape_ref left = tape_form_in_time(t, s->left);
+		return tape_compare(t, s->comparison, left, tape_form_in_time(t, s->right));
+	}
+	if (s->choice == CHOICE_BY_SEQUENCE)
+		return tape_binary(t, TAPE_UNEQUAL, recurrence(r, s->test, 0), tape_number(t, 0));
+	bool held = s->choice == CHOICE_BY_HOLD;
+	const struct series_switching *d = &r->x->function[s->switching];
+	if (r->names.by_numbers) {
+		tape_ref at = tape_constant(t, d->at[s->breakpoint]);
+		return tape_compare(t, held ? CMP_EQ : CMP_GT, recurrence(r, d->sequence, 0), at);
+	}
+	return held ? tape_operand(t, TAPE_HELD, s->switching, breakpoint_rank(r->x, s->switching, s->breakpoint) + 1)
+		    : tape_operand(t, TAPE_ABOVE, s->switching, upper_rank(r->x, s->switching, s->breakpoint));
+}
+
+static tape_ref choice(struct recurrences *r, const struct sequence *s, int k, part_of *part)
+{
+	struct tape *t = r->t;
+	tape_ref a = part(r, s->a, k), b = part(r, s->b, k), zero = tape_number(t, 0);
+	if (a == TAPE_NONE && b == TAPE_NONE)
+		return TAPE_NONE;
+	return tape_select(t, condition(r, s), a == TAPE_NONE ? zero : a, b == TAPE_NONE ? zero : b);
+}
+
 /* ---- sizes of what a value is summed from ---- */
 
 static tape_ref add_sizes(struct recurrences *r, tape_ref all, const struct list *list)
@@ -198,8 +235,6 @@ static bool has_parts(const struct recurrences *r, int sequence)
 	const struct sequence *s = sequence_of(r, sequence);
 	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || (s->kind == SEQUENCE_SUM && s->terms > 0));
 }
-
-static tape_ref condition(struct recurrences *r, const struct sequence *s);
 
 tape_ref recurrence_full_size(struct recurrences *r, int sequence)
 {
@@ -319,6 +354,91 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 	if (*ref == UNKNOWN)
 		*ref = named(r, made_of(r, sequence, s, k, early), sequence, format("early_%d", k));
 	return *ref;
+}
+
+/* ---- linear equations, M_0 factored once ---- */
+
+/* The k-th where that of solutions is 0 */
+static tape_ref provisional(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	tape_ref *ref = &r->early[sequence * (r->x->order + 1) + k];
+	if (s->kind == SEQUENCE_SOLUTION)
+		return TAPE_NONE;
+	if (!s->solved)
+		return recurrence(r, sequence, k);
+	if (*ref == UNKNOWN)
+		*ref = s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
+						  : made_of(r, sequence, s, k, provisional);
+	return *ref;
+}
+
+/* What the k-th of solutions adds to it: it is linear in them, with factors that the first coefficients make. */
+static tape_ref update(struct recurrences *r, int sequence, int k);
+
+static tape_ref update_times(struct recurrences *r, int sequence, int k, double factor, int other)
+{
+	tape_ref change = update(r, sequence, k);
+	return change == TAPE_NONE ? change : newest(r, change, factor, other);
+}
+
+static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, int k)
+{
+	struct list sum = { 0 };
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *term = &s->term[i];
+		double factor = term->factor ? term->factor[k] : 1;
+		if (term->kind == TERM_SEQUENCE)
+			add(&sum, tape_scaled(r->t, factor, update(r, term->a, k)));
+		if (term->kind != TERM_PRODUCT)
+			continue;
+		add(&sum, update_times(r, term->a, k, factor, term->b));
+		add(&sum, update_times(r, term->b, k, factor, term->a));
+	}
+	return chain(r->t, &sum);
+}
+
+static tape_ref update(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	tape_ref *ref = &r->update[sequence * (r->x->order + 1) + k];
+	if (s->kind == SEQUENCE_SOLUTION)
+		return recurrence(r, sequence, k);
+	if (!s->solved)
+		return TAPE_NONE;
+	if (*ref == UNKNOWN)
+		*ref = s->kind == SEQUENCE_QUOTIENT ? over(r, sequence, update(r, s->a, k))
+		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
+						    : update_of_sum(r, s, k);
+	return *ref;
+}
+
+static tape_ref entry(struct recurrences *r, int sequence)
+{
+	return sequence == NONE ? TAPE_NONE : recurrence(r, sequence, 0);
+}
+
+static struct tape_factors *factors_of(struct recurrences *r, const struct linear_equations *e)
+{
+	struct solved *solved = &r->solved[e->number];
+	SCRATCH tape_ref *matrix = ARRAY(tape_ref, e->n * e->n);
+	for (int i = 0; i < e->n * e->n && !solved->factors; i++)
+		matrix[i] = entry(r, e->matrix[i]);
+	if (!solved->factors)
+		solved->factors = tape_factors_new(r->t, e->n, matrix);
+	return solved->factors;
+}
+
+static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
+{
+	const struct linear_equations *e = s->equations;
+	tape_ref *x = &r->solved[e->number].x[k * e->n];
+	SCRATCH tape_ref *right = ARRAY(tape_ref, e->n);
+	for (int i = 0; i < e->n && x[0] == UNKNOWN; i++)
+		right[i] = k == 0 ? entry(r, e->right[i]) : less(r->t, TAPE_NONE, provisional(r, e->residual[i], k));
+	if (x[0] == UNKNOWN)
+		tape_solve(factors_of(r, e), right, x);
+	return x[s->component];
 }
 
 /* ---- gains: derivatives of the k-th by the k-th of another, k >= 1: a number, or what follows from the first
@@ -461,35 +581,6 @@ static tape_ref first(struct recurrences *r, const struct sequence *s)
 				       : tape_call(t, s->function, a);
 }
 
-/* By interval[], or by the numbers themselves */
-static tape_ref condition(struct recurrences *r, const struct sequence *s)
-{
-	struct tape *t = r->t;
-	if (s->choice == CHOICE_BY_TIME) {
-		tape_ref left = tape_form_in_time(t, s->left);
-		return tape_compare(t, s->comparison, left, tape_form_in_time(t, s->right));
-	}
-	if (s->choice == CHOICE_BY_SEQUENCE)
-		return tape_binary(t, TAPE_UNEQUAL, recurrence(r, s->test, 0), tape_number(t, 0));
-	bool held = s->choice == CHOICE_BY_HOLD;
-	const struct series_switching *d = &r->x->function[s->switching];
-	if (r->names.by_numbers) {
-		tape_ref at = tape_constant(t, d->at[s->breakpoint]);
-		return tape_compare(t, held ? CMP_EQ : CMP_GT, recurrence(r, d->sequence, 0), at);
-	}
-	return held ? tape_operand(t, TAPE_HELD, s->switching, breakpoint_rank(r->x, s->switching, s->breakpoint) + 1)
-		    : tape_operand(t, TAPE_ABOVE, s->switching, upper_rank(r->x, s->switching, s->breakpoint));
-}
-
-static tape_ref choice(struct recurrences *r, const struct sequence *s, int k)
-{
-	struct tape *t = r->t;
-	tape_ref a = recurrence(r, s->a, k), b = recurrence(r, s->b, k), zero = tape_number(t, 0);
-	if (a == TAPE_NONE && b == TAPE_NONE)
-		return TAPE_NONE;
-	return tape_select(t, condition(r, s), a == TAPE_NONE ? zero : a, b == TAPE_NONE ? zero : b);
-}
-
 static bool is_constant_sequence(struct recurrences *r, int sequence)
 {
 	return sequence == NONE || recurrence(r, sequence, 1) == TAPE_NONE;
@@ -500,12 +591,16 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 	const bool integral = s->kind == SEQUENCE_INTEGRAL;
 	if (s->kind == SEQUENCE_RATE)
 		return tape_scaled(r->t, k + 1, recurrence(r, s->a, k + 1));
-	if (s->kind == SEQUENCE_CHOICE)
-		return choice(r, s, k);
+	if (s->kind == SEQUENCE_CHOICE && !(s->solved && k > 0))
+		return choice(r, s, k, recurrence);
+	if (s->kind == SEQUENCE_SOLUTION)
+		return solution(r, s, k);
 	if (k == 0 && s->kind != SEQUENCE_SUM)
 		return first(r, s);
 	if (integral && s->state == NONE && is_constant_sequence(r, s->a) && is_constant_sequence(r, s->b))
 		return TAPE_NONE;
+	if (s->solved && k > 0)
+		return plus(r->t, provisional(r, sequence, k), update(r, sequence, k));
 	return s->gains && k > integral ? joined(r, sequence, s, k - integral)
 					: made_of(r, sequence, s, k - integral, recurrence);
 }
@@ -546,9 +641,15 @@ struct recurrences *recurrences_new(const struct step *step, const struct expans
 	int all = x->count * (x->order + 1);
 	*r = (struct recurrences){ .step = step, .x = x, .names = names, .t = tape_new(),
 				   .made = unmade(all, UNKNOWN), .early = unmade(all, UNKNOWN),
+				   .update = unmade(all, UNKNOWN),
 				   .helper = unmade(x->count, TAPE_NONE), .size = unmade(x->count, TAPE_NONE) };
 	r->gain = ARRAY(tape_ref *, x->count);
-	for (int i = 0; i < x->count; i++)
+	r->solved = ARRAY(struct solved, x->equations + 1);
+	for (int i = 0; i < x->count; i++) {
+		const struct linear_equations *e = x->sequence[i].equations;
 		r->gain[i] = unmade(x->sequence[i].gains, TAPE_NONE);
+		if (e)
+			r->solved[e->number].x = unmade(e->n * (x->order + 1), UNKNOWN);
+	}
 	return r;
 }

@@ -25,8 +25,11 @@ static void add_forcing(const struct sequencing *w, struct sum *sum, const struc
 	sum_add(sum, TERM_LOAD, column_of_load(w->system, l) + column, 0, factor);
 }
 
+/* A state, or a highest derivative that equations are solved for */
 static int state_of(const struct sequencing *w, const struct basis *basis)
 {
+	if (is_highest(&w->step->model->frame, basis) && w->highest[basis->index] != NONE)
+		return w->highest[basis->index];
 	return basis->order ? w->system->velocity[basis->index] : basis->index;
 }
 
@@ -536,6 +539,59 @@ static int sequence_of_param(struct sequencing *w, const struct atom *atom)
 	return sum_sequence(w, &sum);
 }
 
+static int entry_sequence(struct sequencing *w, const struct form *form)
+{
+	return form->terms ? sequence_of_form(w, form) : NONE;
+}
+
+/* M x - f of a row, as a sum */
+static int residual_of_row(struct sequencing *w, const struct linear_equations *e, int row)
+{
+	struct sum sum = { 0 };
+	RATIONAL one = RATIO(1, 1), minus = RATIO(-1, 1);
+	for (int j = 0; j < e->n; j++)
+		if (e->matrix[row * e->n + j] != NONE)
+			sum_add(&sum, TERM_PRODUCT, e->matrix[row * e->n + j], e->first + j, one);
+	if (e->right[row] != NONE)
+		sum_add(&sum, TERM_SEQUENCE, e->right[row], 0, minus);
+	return sum_sequence(w, &sum);
+}
+
+/* All components, one after the other; returns the first */
+static int solution_sequences(struct sequencing *w, const struct atom *a)
+{
+	struct linear_equations *e = NEW(struct linear_equations);
+	const struct linear_system system = system_of(a, a->operand);
+	const int n = system.n;
+	*e = (struct linear_equations){ .n = n, .number = w->x->equations++, .first = w->x->count,
+					.matrix = ARRAY(int, n * n), .right = ARRAY(int, n),
+					.residual = ARRAY(int, n) };
+	for (int j = 0; j < n; j++)
+		new_sequence(w, (struct sequence){ .kind = SEQUENCE_SOLUTION, .state = NONE, .a = NONE, .b = NONE,
+						  .equations = e, .component = j });
+	for (int j = 0; j < n && a->written; j++)
+		w->highest[a->written->highest[j].index] = e->first + j;
+	for (int i = 0; i < n; i++)
+		e->right[i] = entry_sequence(w, system.f[i]);
+	for (int i = 0; i < n * n; i++)
+		e->matrix[i] = entry_sequence(w, system.M[i]);
+	for (int i = 0; i < n; i++)
+		e->residual[i] = a->written ? sequence_of_form(w, a->written->residual[i]) : residual_of_row(w, e, i);
+	return e->first;
+}
+
+static int solution_sequence(struct sequencing *w, const struct atom *a)
+{
+	for (int i = 0; i < w->solutions; i++)
+		if (same_solution(w->solution[i].atom, a))
+			return w->solution[i].first + a->component;
+	int first = solution_sequences(w, a);
+	ENLARGE(w->solution, (size_t)w->solutions + 1);
+	w->solution[w->solutions].atom = a;
+	w->solution[w->solutions++].first = first;
+	return first + a->component;
+}
+
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 {
 	if (w->atom[atom->index] != NONE)
@@ -548,6 +604,7 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	case ATOM_POWER:      made = sequence_of_power(w, atom); break;
 	case ATOM_CALL:       made = sequence_of_call(w, atom); break;
 	case ATOM_CHOOSE:     made = sequence_of_choice(w, atom); break;
+	case ATOM_SOLUTION:   made = solution_sequence(w, atom); break;
 	default:
 		made = choice(w, atom, atom->operand[0], atom->comparison, atom->operand[1],
 			      sequence_of_constant(w, 1), sequence_of_constant(w, 0));

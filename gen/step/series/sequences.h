@@ -25,14 +25,23 @@ enum sequence_kind {
 	SEQUENCE_ROOT,              /* c^2 = a */
 	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
 	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
-	SEQUENCE_CHOICE             /* a where the condition holds, else b */
+	SEQUENCE_CHOICE,            /* a where the condition holds, else b */
+	SEQUENCE_SOLUTION           /* one component of x, of equations that are linear in it */
 };
 /* By which a choice is made: two forms linear in t that are compared, a switching function of the state above a
  * breakpoint, or another sequence that is not 0 and changes with such choices alone */
 /* or whether a switching function is held between two breakpoints, this and its twin */
 enum choice_kind { CHOICE_BY_TIME, CHOICE_BY_STATE, CHOICE_BY_HOLD, CHOICE_BY_SEQUENCE };
+/* M x = f, each entry a sequence, NONE where it is 0. At k >= 1 they are read off the residuals F = M x - f, as these
+ * are written: with the k-th of x set to 0 F has the k-th -M_0 x_k. */
+struct linear_equations {
+	int n, number;              /* rows; which of the expansion's */
+	int *matrix, *right, *residual, first; /* first: x_0, which the other components follow */
+};
 struct sequence {
 	enum sequence_kind kind;
+	const struct linear_equations *equations;
+	int component;
 	int state;                  /* of an integral that is one; NONE */
 	enum function function;     /* of another: its value from a (and b) */
 	int a, b;
@@ -47,6 +56,7 @@ struct sequence {
 	struct sequence_term *term;
 	int top;                    /* the last that something reads and that is not 0; -1: none is read */
 	bool known;                 /* it depends on time and inputs alone */
+	bool solved;                /* its k-th depends on the k-th of a solution */
 	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their
 	 * k-th */
 	int gains;                  /* 0: not made so */
@@ -75,6 +85,9 @@ struct sequencing {                 /* what the makers of sequences share */
 	mpq_t unit;                 /* of time: D, h or several of them */
 	int *uses;                  /* per atom */
 	int *atom;                  /* per atom: its sequence; NONE: not made yet */
+	int solutions;
+	struct { const struct atom *atom; int first; } *solution;
+	int *highest;               /* per coordinate: the solution that its highest derivative is; NONE */
 	int operands;               /* forms that are no single atom, each made once */
 	struct { const struct form *form; int sequence; } *operand;
 };

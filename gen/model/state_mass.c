@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Equations in which highest derivatives have factors of the state, of time or of tunable params: M(q) q'' = f. They
+ * are linear in q'', so M is the derivative of the residuals by q'', and f is what they are without. Equations that M
+ * couples are solved together: q_j'' - (M^-1 f)_j takes the place of each, an atom that schemes treat as any other.
+ * Blocks in which M is constant stay as they are, for the exact linear core. */
+#include "building.h"
+#include "checks.h"
+#include "math/math.h"
+#include "state_mass.h"
+
+struct solving {
+	struct building *b;
+	struct segment_equations *s;
+	int n;
+	struct form **M;            /* [row][coordinate]: of the residuals */
+	struct point *rest;         /* where highest derivatives are 0 */
+	int *block;                 /* rows, then coordinates: parent pointers */
+};
+
+static int highest_order(const struct building *b, int coord)
+{
+	return b->model->system.velocity[coord] >= 0 ? 2 : 1;
+}
+
+/* The velocity of friction without mass is a highest derivative that regions solve for, not these equations. */
+static bool is_solved_by_regions(const struct atom *atom)
+{
+	return atom->kind == ATOM_CALL && atom->function >= FN_FRICTION;
+}
+
+/* An atom in which a highest derivative stands, that of `coord`, or where that is negative any; NULL: there is none */
+static const struct atom *atom_of_highest(const struct building *b, const struct form *form, int coord)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *atom = form->term[i].basis.atom;
+		if (!atom || !atom->state || is_solved_by_regions(atom))
+			continue;
+		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+		for (const struct form_term **term = terms_within(form_unit(form->term[i].basis), seen); *term; term++)
+			if (is_highest(&b->model->frame, &(*term)->basis) &&
+			    (coord < 0 || (*term)->basis.index == coord))
+				return atom;
+	}
+	return NULL;
+}
+
+bool has_highest_within(const struct building *b, const struct form *form, int coord)
+{
+	return atom_of_highest(b, form, coord) != NULL;
+}
+
+struct starting {
+	struct building *b;
+	struct point *start;
+	const struct moving_mass *mass;
+};
+
+/* ---- M and f ---- */
+
+static _Noreturn void report_not_linear(const struct atom *atom)
+{
+	error(atom->node->start,
+	      "equations are solved for them by elimination: they stand in sums, and times other factors",
+	      "'%s' is not linear in highest derivatives", text_between(atom->node->start, atom->node->end));
+}
+
+static bool holds_highest(const struct solving *w, const struct form *form)
+{
+	bool holds = atom_of_highest(w->b, form, -1) != NULL;
+	for (int i = 0; i < form->terms; i++)
+		holds = holds || is_highest(&w->b->model->frame, &form->term[i].basis);
+	return holds;
+}
+
+/* Products and choices have them for operands; a condition on one, or a function of one, is not linear. */
+static void check_linear(const struct solving *w, const struct form *form)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!a || !has_highest_within(w->b, form_unit(form->term[i].basis), -1))
+			continue;
+		int held = 0;
+		for (int k = 0; k < a->operands; k++) {
+			bool holds = holds_highest(w, a->operand[k]), chooses = a->kind == ATOM_CHOOSE;
+			held += holds * (a->kind == ATOM_PRODUCT ? (int)a->exponent[k] : 1);
+			if (holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
+				      (!chooses && held > 1)))
+				report_not_linear(a);
+			check_linear(w, a->operand[k]);
+		}
+	}
+}
+
+static void find_row(struct solving *w, int row)
+{
+	const struct form *residual = w->s->residual[row].form;
+	const struct atom *atom = atom_of_highest(w->b, residual, -1);
+	check_linear(w, residual);
+	for (int j = 0; j < w->n; j++) {
+		struct form **entry = &w->M[row * w->n + j];
+		if (atom) {
+			*entry = form_derivatives(&w->b->collector, 1, &residual, false, j, highest_order(w->b, j))[0];
+			continue;
+		}
+		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = highest_order(w->b, j) };
+		const struct form_term *term = form_find(residual, &basis);
+		*entry = term ? form_constant(term->factor) : NEW(struct form);
+	}
+}
+
+/* The residual where highest derivatives are 0; terms without them stay as they are written */
+static struct form *remaining(const struct solving *w, int row)
+{
+	const struct form *residual = w->s->residual[row].form;
+	struct form *rest = NEW(struct form);
+	for (int i = 0; i < residual->terms; i++) {
+		const struct form_term *term = &residual->term[i];
+		const struct form *alone = form_unit(term->basis);
+		if (is_highest(&w->b->model->frame, &term->basis))
+			continue;
+		if (has_highest_within(w->b, alone, -1))
+			form_add_to(rest, form_at(w->rest, alone), term->factor);
+		else
+			form_add_basis(rest, term->basis, term->factor);
+	}
+	return rest;
+}
+
+static struct point *point_at_rest(struct building *b)
+{
+	int n = b->model->n;
+	struct fixing *fixing = ARRAY(struct fixing, n);
+	for (int j = 0; j < n; j++) {
+		fixing[j] = (struct fixing){ .symbol = b->model->frame.coord[j], .coord = j,
+					     .order = highest_order(b, j) };
+		mpq_init(fixing[j].value);
+	}
+	return point_new(&b->collector, n, fixing);
+}
+
+/* ---- the order of elimination: next who is coupled with fewest of those that are left ---- */
+
+static int degree(const struct solving *w, const bool *coupled, const bool *left, int coord)
+{
+	int count = 0;
+	for (int j = 0; j < w->n; j++)
+		count += left[j] && coupled[coord * w->n + j];
+	return count;
+}
+
+static void fill_in(const struct solving *w, bool *coupled, const bool *left, int coord)
+{
+	for (int i = 0; i < w->n; i++)
+		for (int j = 0; j < w->n; j++)
+			if (left[i] && left[j] && coupled[coord * w->n + i] && coupled[coord * w->n + j])
+				coupled[i * w->n + j] = true;
+}
+
+/* Coordinates of a block in this order; returns how many */
+static int order_of_block(const struct solving *w, int block, int *order)
+{
+	int n = w->n, count = 0;
+	SCRATCH bool *left = ARRAY(bool, n), *coupled = ARRAY(bool, n * n);
+	for (int i = 0; i < n; i++) {
+		left[i] = root_of_node(w->block, n + i) == block;
+		for (int j = 0; j < n; j++)
+			if (w->M[w->b->owner[i] * n + j]->terms)
+				coupled[i * n + j] = coupled[j * n + i] = true;
+	}
+	for (;;) {
+		int next = -1;
+		for (int j = 0; j < n; j++)
+			if (left[j] && (next < 0 || degree(w, coupled, left, j) < degree(w, coupled, left, next)))
+				next = j;
+		if (next < 0)
+			return count;
+		left[next] = false;
+		fill_in(w, coupled, left, next);
+		order[count++] = next;
+	}
+}
+
+/* ---- blocks ---- */
+
+static void find_blocks(struct solving *w)
+{
+	w->block = ARRAY(int, 2 * w->n);
+	for (int i = 0; i < 2 * w->n; i++)
+		w->block[i] = i;
+	for (int i = 0; i < w->n; i++)
+		for (int j = 0; j < w->n; j++)
+			if (w->M[i * w->n + j]->terms)
+				join_nodes(w->block, i, w->n + j);
+}
+
+static bool is_constant_block(const struct solving *w, int block)
+{
+	bool constant = true;
+	for (int i = 0; i < w->n; i++)
+		for (int j = 0; j < w->n && root_of_node(w->block, i) == block; j++)
+			constant = constant && is_constant(w->M[i * w->n + j]);
+	return constant;
+}
+
+static void solve_block(struct solving *w, int block)
+{
+	SCRATCH int *order = ARRAY(int, w->n);
+	const int n = order_of_block(w, block, order);
+	const struct form **M = ARRAY(const struct form *, n * n), **f = ARRAY(const struct form *, n),
+			  **F = ARRAY(const struct form *, n);
+	struct basis *highest = ARRAY(struct basis, n);
+	const struct atom *atom = NULL;
+	for (int i = 0; i < n; i++) {
+		int row = w->b->owner[order[i]];
+		F[i] = w->s->residual[row].form;
+		f[i] = form_difference(NEW(struct form), remaining(w, row));
+		for (int j = 0; j < n; j++)
+			M[i * n + j] = w->M[row * w->n + order[j]];
+		highest[i] = (struct basis){ .kind = BASIS_COORD, .index = order[i],
+					     .order = highest_order(w->b, order[i]) };
+		atom = atom ? atom : atom_of_highest(w->b, F[i], -1);
+	}
+	struct written_system *written = NEW(struct written_system);
+	*written = (struct written_system){ n, highest, F };
+	const struct linear_system e = { n, M, f, written };
+	w->b->model->equations.moving_mass = atom->node;
+	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ atom->node, e };
+	for (int i = 0; i < n; i++)
+		w->s->residual[w->b->owner[order[i]]].form = form_difference(
+			form_unit(highest[i]), kept_solution(&w->b->collector, atom->node, &e, i));
+}
+
+static void solve_blocks(void *context)
+{
+	struct solving *w = context;
+	for (int i = 0; i < w->n; i++)
+		find_row(w, i);
+	find_blocks(w);
+	for (int i = 0; i < 2 * w->n; i++)
+		if (root_of_node(w->block, i) == i && !is_constant_block(w, i))
+			solve_block(w, i);
+}
+
+void solve_for_highest(struct building *b, struct segment_equations *s)
+{
+	bool any = false;
+	for (int i = 0; i < b->model->n; i++)
+		any = any || has_highest_within(b, s->residual[i].form, -1);
+	if (!any)
+		return;
+	struct solving w = { .b = b, .s = s, .n = b->model->n };
+	w.M = ARRAY(struct form *, w.n * w.n);
+	w.rest = point_at_rest(b);
+	b->collector.equation = true;
+	statement_guard(solve_blocks, &w);
+	b->collector.equation = false;
+}
+
+/* ---- at the start ---- */
+
+/* M where the spec starts; what inputs change in it is not looked at */
+static void check_mass_of(void *context)
+{
+	const struct starting *work = context;
+	const struct model *model = work->b->model;
+	const struct linear_system *system = &work->mass->system;
+	const int n = system->n;
+	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
+	int column;
+	for (int i = 0; i < n * n; i++) {
+		const struct form *entry = form_at(work->start, system->M[i]);
+		if (!is_constant(entry))
+			return;
+		constant_value(&work->b->collector, entry, value[i]);
+	}
+	if (rational_inverse(n, value, inverse, &column))
+		return;
+	const struct basis *highest = &system->written->highest[column];
+	error(work->mass->node->start, "another start, or a mass that moves with it",
+	      "the mass matrix is singular at the start: the equations do not determine %s%s there",
+	      model->names.coord[highest->index], highest->order == 2 ? "''" : "'");
+}
+
+void check_mass_at_start(struct building *b)
+{
+	struct jacobian j = { .b = b, .state = b->model->initial };
+	mpq_init(j.t);
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
+	struct starting work = { .b = b };
+	work.start = point_new(&b->collector, jacobian_point(&j, fixing), fixing);
+	point_at_values(work.start);
+	for (int i = 0; i < b->full->masses && !diagnostics_errors(); i++) {
+		work.mass = &b->full->mass[i];
+		statement_guard(check_mass_of, &work);
+	}
+	mpq_clear(j.t);
+}
+
+const struct form *residual_as_written(const struct model *model, int row)
+{
+	const struct segment_equations *s = model->equations.full;
+	for (int i = 0; s && i < s->masses; i++) {
+		const struct written_system *written = s->mass[i].system.written;
+		for (int k = 0; k < written->rows; k++)
+			if (model->equations.owner[written->highest[k].index] == row)
+				return written->residual[k];
+	}
+	return model->equations.residual[row].form;
+}

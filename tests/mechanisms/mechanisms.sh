@@ -1,0 +1,68 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# mechanisms.sh PLGEN PLRUN SOURCE: mechanisms.cases, as TAP: the values that plrun prints at a time.
+set -u
+absolute() {
+	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
+}
+PLGEN=$(absolute "$1")
+plrun=$(absolute "$2")
+root=$(absolute "$3")
+export PLGEN
+. "$root/tests/tap.sh"
+. "$root/tests/run_cc.sh"
+XDG_CACHE_HOME=$work/cache
+CC=${run_cc%% *}
+CFLAGS=${run_cc#* }
+export XDG_CACHE_HOME CC CFLAGS
+cases=$work/cases
+mkdir "$cases"
+awk -v at="$cases/" '/^=== / { name = at $2; part = ".spec"; next }
+	name == "" { next }
+	/^---$/ { part = ".values"; next }
+	NF > 0 { print >(name part) }' "$root/tests/mechanisms/mechanisms.cases"
+
+# compared VALUES CSV WITHIN: the last row against the values; WITHIN in place of their tolerances. Prints what differs,
+# and fails then.
+compared() {
+	awk -v within="$3" '
+		FNR == NR && NF == 3 && $1 != "scheme" { name[++count] = $1; value[count] = $2; bound[count] = $3 }
+		FNR == NR { next }
+		FNR == 1 { columns = split($0, head, ","); next }
+		{ row = $0 }
+		END {
+			split(row, found, ",")
+			for (k = 1; k <= columns; k++)
+				column[head[k]] = k
+			for (i = 1; i <= count; i++) {
+				d = found[column[name[i]]] - value[i]
+				size = value[i] < 0 ? -value[i] : value[i]
+				allowed = (within == "" ? bound[i] : within) * (size > 1 ? size : 1)
+				if ((name[i] in column) && d <= allowed && d >= -allowed)
+					continue
+				print name[i] " is " found[column[name[i]]] ", expected " value[i] " within " allowed
+				wrong = 1
+			}
+			exit wrong || count == 0
+		}' "$1" "$2"
+}
+
+# check NAME TITLE WITHIN OPTION...
+check() {
+	values=$cases/$1.values title=$2 within=$3 spec=$cases/$1.spec
+	shift 3
+	chosen "$title" || return 0
+	"$plrun" "$@" "$spec" "$(sed -n 's/^at //p' "$values")" >run.csv 2>log &&
+		compared "$values" run.csv "$within" >log
+	result $? "$title"
+}
+
+for spec in "$cases"/*.spec; do
+	name=$(basename "$spec" .spec)
+	check "$name" "$name" ""
+	sed -n 's/^scheme //p' "$cases/$name.values" >schemes
+	while read -r scheme within <&3; do
+		check "$name" "$name, $scheme" "$within" --scheme "$scheme"
+	done 3<schemes
+done
+tap_end
