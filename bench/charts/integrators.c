@@ -259,7 +259,7 @@ int main(int argc, char **argv)
 	const bool quick = flags_of(argc, &argv, "--quick", 1, 1, "integrators [--quick] OUTDIR");
 	const char *folder = argv[0];
 	struct checks c;
-	chart(folder, quick ? 41 : 161);
+	chart(folder, quick ? 41 : 81);
 	checks_open(&c, folder, "integrators_check.csv");
 	orders(folder, &c);
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++) {

@@ -82,7 +82,7 @@ int main(int argc, char **argv)
 	                       "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,"
 	                       "algorithmic_damping_ratio,elongation_size,decay_size");
 	say_progress("quality: period elongation and amplitude decay");
-	chart(csv, quick ? 25 : 81);
+	chart(csv, quick ? 25 : 41);
 	table_close(csv, "quality.csv");
 	checks_open(&c, folder, "quality_check.csv");
 	const double wh = 0.05, q = wh * wh;
