@@ -1,20 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a linear spec with needs leaves open - float or double, two words, the form of the step, modes that are kept -
- * is tried, and the cheapest that meets all needs is taken. What is written or asked for is kept.
+/* What a spec with needs leaves open - float or double, two words, the form of the step, modes that are kept - is
+ * tried, and the cheapest that meets all needs is taken. What is written or asked for is kept.
  *
- * The C of each runs beside a reference: the exact outputs, where there are no inputs; else another program in double,
- * with inputs that do most to the outputs and some more. What outputs lose with modes is known for all inputs.
- *
- * Modes are dropped from the least share on. The steps that are tried are those of the fewest modes that lose less than
- * is needed, of one less, which shows what that would miss, and of a few more, which leave more of the need to
- * rounding. Of many states only steps of modes are tried, where there are such. Where all modes are kept the states are
- * those that were written. */
+ * Modes are dropped from the least share on. What the outputs lose is known for each number of modes at once; the
+ * steps that are tried are those of the fewest modes that lose less than is needed, of one less, which shows what that
+ * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
+ * tried, where there are such. Where all modes are kept the states are those that were written. */
 #include "measuring.h"
 #include "command.h"
 #include "model/checks.h"
 #include "model/linear/modal_truncation.h"
 #include "report/report.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 #include "step/cost.h"
 #include "step/linear/images.h"
 
@@ -24,33 +21,21 @@
 
 enum { MORE_MODES = 3 };            /* than the fewest that lose less than is needed */
 
-/* Programs in double that others are compared with, the most exact first */
-static const struct { enum step_form form; bool compensated; } programs[] = {
-	{ FORM_DELTA, true }, { FORM_KICK_DRIFT_KICK, true }, { FORM_MODAL, false }, { FORM_DIRECT, false }
-};
-enum { PROGRAMS = sizeof programs / sizeof *programs };
-struct program_run { bool tried; struct running *r; struct course **course; };  /* per drive; NULL: not run yet */
-
 struct variant {                    /* a model to step: all modes, or some of them */
 	struct model *model;
-	double *dropped;            /* per requirement: what is lost with modes, for all inputs */
-	struct program_run program[PROGRAMS];
+	double *dropped;            /* per requirement */
+	struct step *states, *modes; /* in double: the numbers of a step of states, of modes; NULL: there is none */
 };
 struct choosing {
 	struct model *written, *stepped;
 	const struct request *request;
 	struct choice *choice;
-	double h, *largest;         /* of a step; per requirement: what the exact output surely reaches */
-	mpq_t *most;                /* per input: its largest bound */
-	struct course *exact;       /* NULL: it is not known */
-	struct variant *all, *variant; /* of all modes; now */
-	struct input_response response;   /* of all modes */
-	int drives;                 /* courses of inputs that are tried; one where there are none */
-	struct sampled *drive;      /* NULL: there are none */
+	double *largest;            /* per requirement: what the exact output surely reaches */
+	struct course *exact;       /* NULL: there is none to walk beside */
+	struct variant *variant;
 	struct alternative *now;
 	struct step *step;
 	bool trying;                /* without what no need asks for */
-	double cheapest;            /* of what met the needs */
 };
 
 /* ---- one alternative ---- */
@@ -81,168 +66,33 @@ static void build_now(void *context)
 		abandon();
 }
 
-static struct running *running_now(const struct choosing *c, const char **why)
-{
-	return running_new(c->stepped->needs.requirement[0].need->at, c->step, 0, why);
-}
-
-/* ---- programs to compare with ---- */
-
-/* NULL: there is none */
-static struct running *program_of(struct choosing *c, struct variant *v, int number)
-{
-	struct program_run *p = &v->program[number];
-	struct alternative *now = c->now;
-	struct step *step = c->step;
-	const char *why;
-	if (p->tried)
-		return p->r;
-	c->now = NEW(struct alternative);
-	*c->now = (struct alternative){ .form = programs[number].form, .compensated = programs[number].compensated,
-					.model = v->model };
-	p->tried = true;
-	if (!unheard_refusal_of(build_now, c))
-		p->r = running_now(c, &why);
-	c->now = now;
-	c->step = step;
-	return p->r;
-}
-
-/* The most exact that is not the alternative itself (NULL: any); its place, or PROGRAMS */
-static int other_program(struct choosing *c, struct variant *v, const struct alternative *a)
-{
-	for (int i = 0; i < PROGRAMS; i++) {
-		const bool itself = a && !a->single && a->form == programs[i].form &&
-				    a->compensated == programs[i].compensated;
-		if (!itself && program_of(c, v, i))
-			return i;
-	}
-	return PROGRAMS;
-}
-
-static const struct course *course_beside(const struct choosing *c, struct variant *v, int program, int drive)
-{
-	struct program_run *p = &v->program[program];
-	if (!p->course)
-		p->course = ARRAY(struct course *, c->drives);
-	if (!p->course[drive])
-		p->course[drive] = run_of(p->r, c->drive ? &c->drive[drive] : NULL, NULL, NULL);
-	return p->course[drive];
-}
-
-static bool is_too_long(const struct choosing *c, double cost)
-{
-	return cost * longest_need(c->stepped) / c->h > 4.0 * LIMIT_MEASURED;
-}
-
-/* What the outputs do without inputs, and by one sample of each; false: no program is there */
-static bool find_response(struct choosing *c, struct variant *v, struct input_response *response)
-{
-	const int program = other_program(c, v, NULL);
-	if (program == PROGRAMS || is_too_long(c, cost_of_step(running_step_of(v->program[program].r), NULL)))
-		return false;
-	*response = input_response_of(v->program[program].r, c->most);
-	return true;
-}
-
-static struct variant *variant_of(struct choosing *c, struct model *model)
-{
-	struct variant *v = NEW(struct variant);
-	struct input_response response;
-	v->model = model;
-	v->dropped = ARRAY(double, c->stepped->needs.requirements);
-	if (!c->all)
-		return v;
-	const bool known = c->response.still && find_response(c, v, &response);
-	if (known)
-		input_response_less(&response, &c->response);
-	for (int i = 0; i < c->stepped->needs.requirements; i++)
-		v->dropped[i] = known ? worst_of(&response, i, c->stepped->needs.requirement[i].most) : HUGE_VAL;
-	if (known)
-		input_response_free(&response);
-	return v;
-}
-
-/* ---- measured ---- */
-
 /* Two words take these forms only. */
 static bool stands_alone(const struct alternative *a)
 {
 	return !a->compensated || a->form == FORM_DELTA || a->form == FORM_KICK_DRIFT_KICK;
 }
 
-/* The largest errors beside a program of the same model, with all inputs that are tried */
-static void measure_beside(struct choosing *c, struct running *r, double *error)
+static void certify(struct choosing *c)
 {
 	struct alternative *a = c->now;
-	const int program = other_program(c, c->variant, a);
-	if (program == PROGRAMS)
-		a->why = "there is no other step to compare it with";
-	a->inputs_tried = c->drive ? c->drives : 0;
-	for (int d = 0; d < c->drives && !a->why; d++) {
-		const struct trial trial = trial_of(r, course_beside(c, c->variant, program, d), NULL,
-						    c->drive ? &c->drive[d] : NULL);
-		a->why = trial.why;
-		for (int i = 0; i < c->stepped->needs.requirements; i++)
-			error[i] = fmax(error[i], trial.error[i]);
-	}
-}
-
-/* Per requirement: beside exact outputs the error itself; else what is lost with modes, and what rounds; with inputs
- * twice what was measured of that */
-static const double *measured_errors(struct choosing *c)
-{
-	struct alternative *a = c->now;
-	const int requirements = c->stepped->needs.requirements;
-	double *error = ARRAY(double, requirements);
-	const bool known = (c->exact || c->response.still) && !is_too_long(c, cost_of_step(c->step, NULL));
-	struct running *r = known ? running_now(c, &a->why) : NULL;
-	if (!r) {
-		a->why = a->why ? a->why : "it takes too long to be measured";
-		return error;
-	}
-	if (c->exact) {
-		const struct trial trial = trial_of(r, c->exact, NULL, NULL);
-		a->why = trial.why;
-		return trial.error;
-	}
-	measure_beside(c, r, error);
-	for (int i = 0; i < requirements; i++)
-		error[i] = c->variant->dropped[i] + (c->drive ? 2 : 1) * error[i] + 8 * 0x1p-53 * c->largest[i];
-	return error;
-}
-
-/* A compiler that contracts products rounds other sums: by as much as a rule, and by twice that is foreseen */
-static bool bears_contraction(const struct error_found *e)
-{
-	return e->error + fmax(e->error - e->dropped, 0) <= e->needed;
-}
-
-static void measure(struct choosing *c)
-{
-	struct alternative *a = c->now;
-	const double *error = measured_errors(c);
-	a->found = ARRAY(struct error_found, c->stepped->needs.requirements);
+	const struct step *exact = c->step->modal ? c->variant->modes : c->variant->states;
+	a->certificate = ARRAY(struct certificate, c->stepped->needs.requirements);
+	a->cost = cost_of_step(c->step, c->stepped->needs.target);
 	for (int i = 0; i < c->stepped->needs.requirements; i++) {
-		struct error_found *e = &a->found[i];
-		*e = (struct error_found){ !a->why, c->exact != NULL, error[i], c->variant->dropped[i],
-					   needed_error(&c->stepped->needs.requirement[i], c->largest[i]) };
-		a->error_ratio = fmax(a->error_ratio, e->error / e->needed);
-		a->as_written = a->as_written || !bears_contraction(e);
+		const struct requirement *r = &c->stepped->needs.requirement[i];
+		struct certificate *found = &a->certificate[i];
+		*found = exact ? certificate_of(c->step, exact, r)
+			       : (struct certificate){ .why = "the numbers of its step are not known in double" };
+		found->dropped = c->variant->dropped[i];
+		found->needed = needed_error(r, c->largest[i]);
+		a->why = a->why ? a->why : found->why;
+		if (found->known)
+			a->error_ratio = fmax(a->error_ratio, error_reported(found) / found->needed);
 	}
-	a->as_written = a->as_written && meets(a);
+	a->bound_error_ratio = a->why ? HUGE_VAL : a->error_ratio;
 }
 
-/* What is dearer than what was found is run where that is no work */
-static bool is_work(const struct choosing *c, const struct alternative *a)
-{
-	enum { READING = 200 };         /* operations of reading the C of a state's */
-	static const double spare = 2e7;
-	const double samples = longest_need(c->stepped) / c->h;
-	return cost_of_step(c->step, NULL) * (samples * c->drives + READING * (double)a->model->system.states) > spare;
-}
-
-/* Whether it is as exact as needed */
+/* Whether it is surely as exact as needed */
 static bool try_one(struct choosing *c, bool single, bool compensated, enum step_form form)
 {
 	struct alternative *a = c->now = NEW(struct alternative);
@@ -251,30 +101,35 @@ static bool try_one(struct choosing *c, bool single, bool compensated, enum step
 	if (!stands_alone(a))
 		return false;
 	a->refused = refusal_of(build_now, c);
-	if (a->refused && a->model->truncated && !c->written->truncated)
+	a->made = c->step;
+	if (!a->refused)
+		certify(c);
+	else if (a->model->truncated && !c->written->truncated)
 		return false;           /* as of all modes, which are tried too */
-	if (!a->refused) {
-		a->cost = cost_of_step(c->step, c->stepped->needs.target);
-		if (a->cost > c->cheapest && is_work(c, a))
-			return true;
-		measure(c);
-	}
-	if (meets(a))
-		c->cheapest = fmin(c->cheapest, a->cost);
 	*MORE(c->choice->alternative, c->choice->alternatives) = *a;
-	return meets(a);
+	return !a->refused && a->bound_error_ratio <= 1;
 }
 
 /* By modes alone: the plainest step shows it. */
-static bool loses_too_much(const struct choosing *c, const struct variant *v)
+static bool loses_too_much(const struct choosing *c)
 {
 	bool loses = false;
 	for (int i = 0; i < c->stepped->needs.requirements; i++)
-		loses = loses || v->dropped[i] > needed_error(&c->stepped->needs.requirement[i], c->largest[i]);
+		loses = loses ||
+			c->variant->dropped[i] > needed_error(&c->stepped->needs.requirement[i], c->largest[i]);
 	return loses;
 }
 
 /* ---- all of one model ---- */
+
+static struct step *step_of(struct choosing *c, struct model *model, enum step_form form)
+{
+	c->now = NEW(struct alternative);
+	c->now->form = form;
+	c->now->model = model;
+	c->step = NULL;
+	return refusal_of(build_now, c) ? NULL : c->step;
+}
 
 static void try_form(struct choosing *c, enum step_form form)
 {
@@ -284,7 +139,7 @@ static void try_form(struct choosing *c, enum step_form form)
 		if (request->real_given && request->single != single)
 			continue;
 		const bool exact = !request->compensated && try_one(c, single, false, form);
-		if (request->compensated || !(exact || loses_too_much(c, c->variant)))
+		if (request->compensated || !(exact || loses_too_much(c)))
 			try_one(c, single, true, form);         /* which is dearer */
 	}
 }
@@ -298,48 +153,108 @@ static bool is_large(const struct model *model)
 static void try_forms(struct choosing *c)
 {
 	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
-	struct variant *v = c->variant;
+	const struct variant *v = c->variant;
 	const bool requested = c->request->form != FORM_AUTO, modes = v->model->truncated;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
-		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && program_of(c, v, 2)) ||
+		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
 				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated &&
-				       loses_too_much(c, v));
+				       loses_too_much(c));
 		if (requested ? c->request->form == forms[i] : !needless)
 			try_form(c, forms[i]);
 	}
 }
 
-/* ---- fewer modes ---- */
-
-/* As many modes as are asked for first */
-static struct variant *variant_of_modes(struct choosing *c, struct modes *modes, const int *order, int count,
-					bool static_correction)
+static struct variant *variant_of(struct choosing *c, struct model *model)
 {
-	bool *kept = ARRAY(bool, modes->count);
-	for (int i = 0; i < count; i++)
-		kept[order[i]] = true;
-	target_double();
-	struct model *model = modes_kept(modes, kept, static_correction);
-	return model ? variant_of(c, model) : NULL;
+	struct variant *v = NEW(struct variant);
+	v->model = model;
+	v->dropped = ARRAY(double, c->stepped->needs.requirements);
+	if (!model->truncated || c->request->form == FORM_MODAL)
+		v->modes = step_of(c, model, FORM_MODAL);
+	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
+		v->states = step_of(c, model, FORM_DIRECT);
+	return v;
 }
 
-static void drop_modes(struct choosing *c, struct modes *modes, bool static_correction)
+/* ---- fewer modes ---- */
+
+struct dropping {
+	struct modes *modes;
+	const int *order;
+	bool static_correction;
+	double **lost;              /* per requirement, per number of modes kept */
+};
+
+static bool loses_less(const struct choosing *c, const struct dropping *d, int count)
 {
-	const int all = modes->count, *order = modes_by_share(modes);
-	struct variant **v = ARRAY(struct variant *, all);
-	int last = 1;
-	for (int more = MORE_MODES; last < all && more >= 0; last++) {
-		v[last] = variant_of_modes(c, modes, order, last, static_correction);
-		more -= v[last] && !loses_too_much(c, v[last]);
+	bool less = true;
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
+		less = less && d->lost[i][count] <= needed_error(&c->stepped->needs.requirement[i], c->largest[i]);
+	return less;
+}
+
+/* As many modes as are asked for first */
+static struct model *model_of_modes(const struct dropping *d, int count)
+{
+	bool *kept = ARRAY(bool, d->modes->count);
+	for (int i = 0; i < count; i++)
+		kept[d->order[i]] = true;
+	target_double();
+	return modes_kept(d->modes, kept, d->static_correction);
+}
+
+static void try_modes(struct choosing *c, const struct dropping *d, int count)
+{
+	struct model *model = model_of_modes(d, count);
+	if (!model)
+		return;
+	c->variant = variant_of(c, model);
+	for (int i = 0; i < c->stepped->needs.requirements; i++)
+		c->variant->dropped[i] = d->lost[i][count];
+	try_forms(c);
+}
+
+/* Per need: how far its C is off as it runs beside the exact outputs; NULL: it cannot run, or leaves the finite
+ * numbers */
+static const double *walk_beside(const struct choosing *c, const struct step *step)
+{
+	const char *why;
+	struct running *r = running_new(c->stepped->needs.requirement[0].need->at, step, 0, &why);
+	const struct trial trial = r ? trial_of(r, c->exact, NULL, NULL) : (struct trial){ .why = why };
+	return trial.why ? NULL : trial.error;
+}
+
+/* Where loads change their formula: as walked in double, from one mode on to a few more than are enough */
+static void walk_truncation_errors(struct choosing *c, struct dropping *d)
+{
+	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
+	for (int i = 0; i < requirements; i++)
+		d->lost[i] = ARRAY(double, all + 1);
+	for (int count = 0, more = MORE_MODES; count < all && more >= 0; count++) {
+		struct model *model = count > 0 ? model_of_modes(d, count) : NULL;
+		const struct step *step = model && c->exact ? step_of(c, model, FORM_DIRECT) : NULL;
+		const double *error = step ? walk_beside(c, step) : NULL;
+		for (int i = 0; i < requirements; i++)
+			d->lost[i][count] = error ? error[i] : HUGE_VAL;
+		more -= loses_less(c, d, count);
 	}
-	int fewest = last;
-	while (fewest > 1 && v[fewest - 1] && !loses_too_much(c, v[fewest - 1]))
+}
+
+static void drop_modes(struct choosing *c, struct dropping *d)
+{
+	const int requirements = c->stepped->needs.requirements, all = d->modes->count;
+	target_double();
+	d->lost = ARRAY(double *, requirements);
+	for (int i = 0; i < requirements && !loads_change(&c->stepped->system); i++)
+		d->lost[i] = truncation_errors_of(d->modes, d->order, d->static_correction,
+						  &c->stepped->needs.requirement[i]);
+	if (loads_change(&c->stepped->system))
+		walk_truncation_errors(c, d);
+	int fewest = all;
+	while (fewest > 1 && loses_less(c, d, fewest - 1))
 		fewest--;
-	for (int count = fewest > 1 ? fewest - 1 : fewest; count < last; count++) {
-		c->variant = v[count];
-		if (v[count])
-			try_forms(c);
-	}
+	for (int count = fewest > 1 ? fewest - 1 : fewest; count <= fewest + MORE_MODES && count < all; count++)
+		try_modes(c, d, count);
 }
 
 static void try_fewer(struct choosing *c)
@@ -352,73 +267,122 @@ static void try_fewer(struct choosing *c)
 	c->now = NEW(struct alternative);
 	c->now->form = FORM_AUTO;
 	ask(c, whole);
-	whole->needs = c->stepped->needs;
+	whole->needs.requirements = c->stepped->needs.requirements;
+	whole->needs.requirement = c->stepped->needs.requirement;
+	whole->needs.target = c->stepped->needs.target;
+	whole->needs.budget = c->stepped->needs.budget;
 	target_double();
 	struct modes *modes = whole->declared_outputs ? modes_of(whole, &why) : NULL;
 	if (!modes || modes->count < 2)
 		return;
 	for (int static_correction = 0; static_correction <= is_driven(&whole->system); static_correction++)
-		drop_modes(c, modes, static_correction);
+		drop_modes(c, &(struct dropping){ .modes = modes, .order = modes_by_share(modes),
+						  .static_correction = static_correction });
+}
+
+/* What the modes that are written to be dropped lose */
+static void count_written(struct choosing *c)
+{
+	const struct modal_truncation *s = c->written->truncated;
+	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
+	int *order = ARRAY(int, modes->count), kept = 0;
+	for (int which = 1; which >= 0; which--)
+		for (int i = 0; i < modes->count; i++)
+			if (s->kept[i] == which)
+				order[kept++] = i;
+	kept = 0;
+	for (int i = 0; i < modes->count; i++)
+		kept += s->kept[i];
+	target_double();
+	for (int i = 0; i < c->stepped->needs.requirements && kept < modes->count; i++)
+		c->variant->dropped[i] =
+			truncation_errors_of(modes, order, s->static_correction,
+					     &c->stepped->needs.requirement[i])[kept];
+}
+
+/* ---- as walked ---- */
+
+/* A bound may be some thousand times what rounding comes to; what is lost with modes is exact. */
+static bool is_hopeful(const struct choosing *c, const struct alternative *a)
+{
+	static const double too_large = 1e5;
+	bool hopeful = !a->refused;
+	for (int i = 0; i < c->stepped->needs.requirements && hopeful; i++) {
+		const struct certificate *found = &a->certificate[i];
+		hopeful = !found->known || (found->dropped <= found->needed &&
+					    found->rounding <= too_large * found->needed);
+	}
+	return hopeful;
+}
+
+static void walk(struct choosing *c, struct alternative *a)
+{
+	c->now = a;
+	ask_now(c);
+	const double *error = walk_beside(c, a->made);
+	if (!error)
+		return;
+	a->why = NULL;
+	a->error_ratio = 0;
+	for (int i = 0; i < c->stepped->needs.requirements; i++) {
+		a->certificate[i].walked = true;
+		a->certificate[i].error = error[i];
+		a->error_ratio = fmax(a->error_ratio, error[i] / a->certificate[i].needed);
+	}
+	a->as_written = a->error_ratio <= 1 && a->bound_error_ratio > 1;
+}
+
+/* Of operations, roughly: those of its run, and what reading its C takes */
+static double work_of_walk(const struct choosing *c, const struct alternative *a)
+{
+	enum { READING = 200 };
+	return a->cost * ((double)c->exact->samples + READING * (double)a->model->system.states);
+}
+
+/* The cheapest first, up to the one that is taken; of the others as many as are no work */
+static void walk_all(struct choosing *c)
+{
+	static const double spare = 2e7;
+	double work = 0;
+	bool met = false;
+	for (int i = 0; i < c->choice->alternatives && c->exact; i++) {
+		struct alternative *a = &c->choice->alternative[i];
+		if (!is_hopeful(c, a))
+			continue;
+		work += work_of_walk(c, a);
+		if (met && work > spare)
+			return;
+		walk(c, a);
+		met = met || meets(a);
+	}
 }
 
 /* ---- all of them ---- */
 
-/* Inputs that do most to each output, and those that measured needs are tried with */
-static void find_drives(struct choosing *c)
+static void try_all(struct choosing *c)
 {
-	const struct needs *needs = &c->stepped->needs;
-	const struct step *step = running_step_of(c->all->program[other_program(c, c->all, NULL)].r);
-	double w[FREQUENCIES];
-	const int count = frequencies_of(step, longest_need(c->stepped), w), kinds = drive_kinds(count);
-	c->drives = needs->requirements + kinds;
-	c->drive = ARRAY(struct sampled, c->drives);
-	for (int i = 0; i < needs->requirements; i++)
-		c->drive[i] = worst_inputs(&c->response, i, c->all->model, needs->requirement[i].most);
-	for (int i = 0; i < kinds; i++)
-		c->drive[needs->requirements + i] =
-			drive_of(c->all->model, i, w, count, c->h, c->response.still->samples, c->most);
-}
-
-static void find_reference(struct choosing *c, const struct model *full)
-{
-	c->h = sample_time(full);
-	c->most = rationals(full->system.inputs);
-	for (int k = 0; k < full->system.inputs * c->stepped->needs.requirements; k++) {
-		const int i = k % full->system.inputs;
-		mpq_srcptr bound = c->stepped->needs.requirement[k / full->system.inputs].most[i];
-		if (mpq_cmp(bound, c->most[i]) > 0)
-			mpq_set(c->most[i], bound);
-	}
-	c->exact = exact_course_of(full, c->stepped);
-	c->all = variant_of(c, c->stepped);
+	c->choice = NEW(struct choice);
+	c->variant = variant_of(c, c->stepped);
+	const struct model *full = c->written->truncated ? c->written->truncated->modes->model : c->stepped;
+	struct step *exact = c->variant->states ? c->variant->states : c->variant->modes;
 	if (full != c->stepped) {
 		struct model *whole = NEW(struct model);
 		*whole = *full;
-		whole->needs = c->stepped->needs;
-		c->all = variant_of(c, whole);
+		exact = step_of(c, whole, FORM_DIRECT);
 	}
-	c->drives = 1;
 	c->largest = ARRAY(double, c->stepped->needs.requirements);
-	const bool known = find_response(c, c->all, &c->response);
+	c->exact = exact_course_of(full, c->stepped);
 	for (int i = 0; i < c->stepped->needs.requirements; i++)
 		c->largest[i] = c->exact ? largest_of(c->exact, i) * (1 - 0x1p-52)
-				: known	 ? reached_by(&c->response, i, c->stepped->needs.requirement[i].most)
+				: exact	 ? largest_of_output(exact, &c->stepped->needs.requirement[i])
 					 : 0;
-	if (known && full->system.inputs > 0)
-		find_drives(c);
-}
-
-static void try_all(struct choosing *c)
-{
-	const struct model *full = c->written->truncated ? c->written->truncated->modes->model : c->stepped;
-	c->choice = NEW(struct choice);
-	c->cheapest = HUGE_VAL;
-	if (!c->all)
-		find_reference(c, full);
-	c->variant = full == c->stepped ? c->all : variant_of(c, c->stepped);
+	if (c->written->truncated)
+		count_written(c);
 	try_forms(c);
 	if (!c->written->truncated)
 		try_fewer(c);
+	sort_by_cost(c->choice);
+	walk_all(c);
 	sort_by_cost(c->choice);
 }
 
@@ -430,7 +394,8 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 	int worst = 0;
 	double most = 0;
 	for (int i = 0; i < c->stepped->needs.requirements; i++) {
-		const double error_ratio = a->found[i].error / a->found[i].needed;
+		const struct certificate *found = &a->certificate[i];
+		const double error_ratio = error_reported(found) / found->needed;
 		worst = error_ratio > most ? i : worst;
 		most = fmax(most, error_ratio);
 	}
@@ -465,8 +430,8 @@ static const char *what_would_do(struct choosing *c)
 {
 	const struct request *request = c->request;
 	struct request open = *request;
-	const int known = other_program(c, c->all, NULL);
-	const double growth = known < PROGRAMS ? growth_of(running_step_of(c->all->program[known].r)) : 0;
+	const struct step *known = c->variant->states ? c->variant->states : c->variant->modes;
+	const double growth = known ? growth_of(known) : 0;
 	if (growth > 1e-9)
 		return format("the model is unstable: what rounds grows as e^{%.3g t} with it", growth);
 	if (!(request->real_given && request->single) && request->form == FORM_AUTO && !request->compensated)
@@ -478,7 +443,7 @@ static const char *what_would_do(struct choosing *c)
 	const struct alternative *best = most_exact(c->choice, HUGE_VAL);
 	c->request = request;
 	return best && best->error_ratio <= 1 ? format("without what is asked for on the command line it can: %s",
-						  error_text(best, worst_requirement(c, best)))
+						  certified_text(best, worst_requirement(c, best)))
 					 : NULL;
 }
 
@@ -488,14 +453,14 @@ static void report_unmet(struct choosing *c)
 	const struct alternative *best = most_exact(choice, HUGE_VAL), *first = choice->alternative;
 	const char *note = what_would_do(c);
 	if (!best) {
-		say_error(c->stepped->needs.requirement[0].need->at, note, "the need cannot be measured: %s",
+		say_error(c->stepped->needs.requirement[0].need->at, note, "the need cannot be certified: %s",
 			  first->refused ? first->refused : first->why);
 		return;
 	}
 	const int i = worst_requirement(c, best);
 	say_error(c->stepped->needs.requirement[i].need->at, note,
-		  "the need cannot be met: at best %s, and %.2g is needed", error_text(best, i),
-		  best->found[i].needed);
+		  "the need cannot be met: at best %s, and %.2g is needed", certified_text(best, i),
+		  best->certificate[i].needed);
 }
 
 static void report_expensive(const struct choosing *c, const struct alternative *taken)

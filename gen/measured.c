@@ -5,10 +5,9 @@
  * certified. */
 #include "measuring.h"
 #include "command.h"
-#include "model/capability.h"
 #include "model/checks.h"
 #include "report/report.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -107,7 +106,7 @@ static void try_schemes(struct measuring *m)
 	}
 	if (m->model->switching || m->model->remainder.force_columns == 0)
 		try_scheme(m, scheme_name(SCHEME_EXACT));
-	if (m->model->remainder.force_columns == 0 && !m->model->switching && !m->events)
+	if (m->model->remainder.force_columns == 0 && !m->model->switching)
 		return;
 	/* What is likely to do comes first: what is dearer is not tried. */
 	for (int likely = 1; likely >= 0; likely--)
@@ -193,8 +192,6 @@ struct step *choose_measured(struct model *stepped, struct request *request)
 	const struct place at = stepped->spec->required.need[0].at;
 	if (!find_requirements(stepped))
 		return NULL;
-	const struct facts facts = facts_of_model(stepped);
-	m.events = facts.contacts;
 	m.largest = ARRAY(double, stepped->needs.requirements);
 	m.until = longest_need(stepped);
 	if (!(m.until > 0)) {

@@ -10,7 +10,7 @@ struct alternative;
 
 /* Of a need: two references agree to a hundredth, so much is left for the step that is tried. */
 #define WITHIN 0.99
-enum { MOST_TRIED = 9, MOST_SAMPLES = 2000000, MOST_KEPT = 4000000, FREQUENCIES = 3 };
+enum { MOST_TRIED = 9, MOST_SAMPLES = 2000000, MOST_KEPT = 4000000 };
 
 struct kept_course { double h; int drive; struct course *course; };
 
@@ -20,7 +20,6 @@ struct measuring {
 	struct request now;         /* of the candidate being built */
 	struct step *step;
 	bool single;                /* the target's type; a reference is in double */
-	bool events;                /* friction or impacts: references are other programs */
 	double until;               /* [s] the last end of a need */
 	double *largest;            /* per need: of the reference's output */
 	int drives;                 /* courses of the inputs that are tried; one where there are none */
@@ -49,9 +48,6 @@ struct ready {                      /* a step as asked for, and its C */
 struct step *built(struct measuring *m, const struct request *as, const char **why);   /* NULL: *why says why */
 struct ready ready_of(struct measuring *m, const struct request *as, const char **why); /* without r: likewise */
 struct request request_of(const struct measuring *m, const struct alternative *a);
-/* [rad/s] of the linear operator, in rising order, as many as tell apart, up to FREQUENCIES; else by length of time and
- * of a step */
-int frequencies_of(const struct step *step, double until, double *w);
 bool open_reference(struct measuring *m);      /* false: m->why */
 /* From this start, with inputs number `drive`, against a reference from there; the largest of error over need. `spec`:
  * it is the spec's, and what is found is kept in the alternative */

@@ -2,8 +2,7 @@
 /* Starts and loads beside those of the spec: what is chosen is tried from there too. */
 #include "measuring.h"
 #include "model/checks.h"
-#include "model/tunable/tuning.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,19 +12,14 @@ static const char *value_of_param(const struct symbol *s)
 	return s->value ? text_between(s->value->start, s->value->end) : NULL;
 }
 
-static struct request with_definition(struct request as, const char *definition)
+static struct request with_param(struct request as, const struct symbol *s, const char *by)
 {
 	struct definitions more = { 0 };
 	for (int i = 0; i < as.definitions.count; i++)
 		*MORE(more.definition, more.count) = as.definitions.definition[i];
-	definitions_add(definition, &more);
+	definitions_add(format("%s=%s*(%s)", s->name, by, value_of_param(s)), &more);
 	as.definitions = more;
 	return as;
-}
-
-static struct request with_param(struct request as, const struct symbol *s, const char *by)
-{
-	return with_definition(as, format("%s=%s*(%s)", s->name, by, value_of_param(s)));
 }
 
 static void find_amplitudes(struct measuring *m, const struct alternative *a)
@@ -103,57 +97,6 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 	}
 }
 
-/* ---- tunable params at ends of their ranges ---- */
-
-struct ends { struct request as; double *value; const char *where; };
-
-/* Bit k of `high`: param k is at its upper end */
-static struct ends ends_of(const struct measuring *m, const struct alternative *a, unsigned high)
-{
-	const struct tuning *t = tunables_of(m->model);
-	struct ends e = { request_of(m, a), ARRAY(double, t->given), "" };
-	for (int k = 0; k < t->given; k++) {
-		const struct param_range *range = m->model->params.range[k];
-		const char *name = t->param[k].symbol->name;
-		mpq_srcptr end = high >> k & 1 ? range->high : range->low;
-		e.value[k] = nearest_double(end);
-		e.as = with_definition(e.as, format("%s=%s", name, exact_text(end)));
-		e.where = format("%s%s%s = %.3g", e.where, k > 0 ? ", " : "", name, e.value[k]);
-	}
-	e.as.single = false;
-	return e;
-}
-
-/* The C is retuned; its reference is of a model that has these values. */
-static void try_ends(struct measuring *m, struct alternative *a, struct ready *ready, const struct ends *e)
-{
-	double *start = ARRAY(double, m->model->written->system.states + 1);
-	const struct ready there = ready_of(m, &e->as, &a->why);
-	const int status = running_retune(ready->r, e->value);
-	if (!there.r || status != 0) {
-		a->why = there.r ? format("NAME_retune refuses %s, with status %d", e->where, status) : a->why;
-		return;
-	}
-	running_start(there.r, 0, NULL);
-	running_state(there.r, start);
-	ready->roads.r = there.r;
-	memcpy(ready->roads.own, there.roads.own, sizeof there.roads.own);
-	try_near(m, a, ready, start, e->where);
-}
-
-static void try_all_ends(struct measuring *m, struct alternative *a, struct ready *ready)
-{
-	const struct tuning *t = tunables_of(m->model);
-	for (unsigned high = 0; t && high < 1u << t->given && !a->why; high++) {
-		const struct ends e = ends_of(m, a, high);
-		try_ends(m, a, ready, &e);
-	}
-	for (int k = 0; t && k < t->given; k++)
-		a->ends = format("%s%s%s", a->ends ? a->ends : "", k > 0 ? ", " : "", t->param[k].symbol->name);
-}
-
-/* ---- inputs, and all of them ---- */
-
 /* With the inputs of the largest error, a tenth smaller; larger ones are beyond their bounds */
 static void try_smaller_inputs(struct measuring *m, struct alternative *a, struct ready *ready)
 {
@@ -180,5 +123,4 @@ void try_neighbours(struct measuring *m, struct alternative *a)
 	try_smaller_inputs(m, a, &ready);
 	find_amplitudes(m, a);
 	try_amplitudes(m, a);
-	try_all_ends(m, a, &ready);
 }

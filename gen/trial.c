@@ -3,8 +3,7 @@
 #include "measuring.h"
 #include "model/checks.h"
 #include "model/linear/modal_truncation.h"
-#include "model/tunable/tuning.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 #include "step/linear/images.h"
 
 #include <math.h>
@@ -23,8 +22,6 @@ static void build_now(void *context)
 	struct model *model = model_build(spec, &m->now);
 	if (model)
 		model = model_reduce(model);
-	if (model)
-		model = find_tuning(model, &m->now);
 	model = model ? model_truncate(model) : NULL;
 	model = model ? stepped_model(model, spec, &m->now) : NULL;
 	m->step = model ? step_build(model) : NULL;
@@ -45,30 +42,6 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 	return refused ? NULL : m->step;
 }
 
-/* Programs in the place of NAME_rhs, which friction and impacts have none of: from event to event in closed form, or
- * series and collocations to a tolerance far below */
-static const struct { const char *scheme, *tolerance; bool compensated; } programs[] = {
-	{ "exact", NULL, true }, { "taylor", "1e-13", false }, { "radau", "1e-12", false }
-};
-enum { PROGRAMS = sizeof programs / sizeof *programs };
-
-static void find_programs(struct measuring *m, const struct request *as, struct roads *roads, const char **why)
-{
-	struct running *r = NULL;
-	for (int i = 0, found = 0; i < PROGRAMS && found < ROADS; i++) {
-		struct request other = *as;
-		other.scheme = programs[i].scheme;
-		other.tolerance = programs[i].tolerance;
-		other.compensated = programs[i].compensated;
-		other.single = other.selftest = other.batch = false;
-		other.form = FORM_AUTO;
-		const struct step *step = built(m, &other, why);
-		r = step ? running_new(m->model->needs.requirement[0].need->at, step, 0, why) : NULL;
-		if (r)
-			roads->own[found++] = r;
-	}
-}
-
 struct ready ready_of(struct measuring *m, const struct request *as, const char **why)
 {
 	struct ready found = { .step = built(m, as, why), .roads = m->roads };
@@ -76,13 +49,10 @@ struct ready ready_of(struct measuring *m, const struct request *as, const char 
 	if (!found.step)
 		return found;
 	const char *refused;
-	found.r = running_new(m->model->needs.requirement[0].need->at, found.step,
-			      m->events ? WITH_COUNTS : WITH_RHS | WITH_COUNTS, &refused);
+	found.r = running_new(m->model->needs.requirement[0].need->at, found.step, WITH_RHS | WITH_COUNTS, &refused);
 	found.roads.h = mpq_get_d(found.step->model->h);
 	(m->single ? target_float : target_double)();
 	*why = refused ? refused : *why;
-	if (m->events && found.r)
-		find_programs(m, as, &found.roads, why);
 	return found;
 }
 
@@ -139,7 +109,7 @@ static bool find_tolerance(struct measuring *m)
 	double apart_at_best = HUGE_VAL;
 	m->roads.h = m->drive ? m->drive->h : m->until / 64;
 	m->roads.drive = m->drive;
-	for (int pair = 0; pair < (m->events ? 1 : 2); pair++) {
+	for (int pair = 0; pair < 2; pair++) {
 		m->roads.stiff = pair > 0;
 		m->roads.size = ARRAY(double, states);
 		m->roads.tolerance = 1e-5;
@@ -154,7 +124,7 @@ static bool find_tolerance(struct measuring *m)
 			if (found <= known)
 				return true;
 			apart_at_best = fmin(apart_at_best, found);
-			if (!isfinite(found) || m->events)
+			if (!isfinite(found))
 				break;
 		}
 	}
@@ -175,38 +145,41 @@ static void find_changes(struct measuring *m)
 	m->roads.change = change;
 }
 
-int frequencies_of(const struct step *step, double until, double *w)
+/* [rad/s] of the linear operator, in rising order, as many as tell apart; else by length of time and of a step */
+static int frequencies_of(const struct measuring *m, const struct step *step, double *w, int most)
 {
 	const double h = mpq_get_d(step->model->h);
 	struct pole_report *pole;
 	int count = 0;
-	const int poles = step->model->switching ? 0 : poles_of(step->model, step->written, &pole);
-	for (int i = 0; i < poles && count < FREQUENCIES; i++) {
+	const int poles = m->model->switching ? 0 : poles_of(step->model, step->written, &pole);
+	for (int i = 0; i < poles && count < most; i++) {
 		const double found = fabs(mpfr_get_d(pole[i].im, MPFR_RNDN));
-		if (found > 6 / until && found * h < 2 && (count == 0 || found > 1.01 * w[count - 1]))
+		if (found > 6 / m->until && found * h < 2 && (count == 0 || found > 1.01 * w[count - 1]))
 			w[count++] = found;
 	}
-	for (; count == 0 || (poles == 0 && count < FREQUENCIES); count++)
-		w[count] = 12 / until * pow(until / h / 24, (count + 1.0) / (FREQUENCIES + 1));
+	for (; count == 0 || (poles == 0 && count < most); count++)
+		w[count] = 12 / m->until * pow(m->until / h / 24, (count + 1.0) / (most + 1));
 	return count;
 }
 
 static void find_drives(struct measuring *m, const struct step *step)
 {
+	enum { FREQUENCIES = 3 };
+	const struct linear *system = &m->model->system;
 	const double h = mpq_get_d(step->model->h);
 	double w[FREQUENCIES];
 	m->drives = 1;
-	if (sampled_inputs(m->model) == 0)
+	if (system->inputs == 0)
 		return;
-	const int count = frequencies_of(step, m->until, w);
+	const int count = frequencies_of(m, step, w, FREQUENCIES);
 	m->drives = drive_kinds(count);
 	m->drive = ARRAY(struct sampled, m->drives);
 	for (int i = 0; i < m->drives; i++)
-		m->drive[i] = drive_of(m->model, i, w, count, h, (long)ceil(m->until / h),
+		m->drive[i] = drive_of(system, i, w, count, h, (long)ceil(m->until / h),
 				       m->model->needs.requirement[0].most);
 }
 
-static bool find_reference(struct measuring *m)
+bool open_reference(struct measuring *m)
 {
 	struct request as = *m->request;
 	as.single = false;
@@ -215,12 +188,6 @@ static bool find_reference(struct measuring *m)
 	m->roads = (struct roads){ .r = ready.r, .until = m->until, .most = LIMIT_MEASURED / 4 };
 	if (!ready.r)
 		return false;
-	m->roads.own[0] = ready.roads.own[0];
-	m->roads.own[1] = ready.roads.own[1];
-	if (m->events && !m->roads.own[1]) {
-		m->why = "there are no two programs to compare it with";
-		return false;
-	}
 	find_drives(m, ready.step);
 	find_changes(m);
 	if (!find_tolerance(m))
@@ -228,17 +195,6 @@ static bool find_reference(struct measuring *m)
 	const double fastest = fastest_motion(m);
 	m->longest = fmin(m->until / 16, fastest > 0 ? 2 * 3.14159265358979 / fastest / 8 : m->until);
 	return true;
-}
-
-/* Solved by two methods; where that takes too long, or there is no NAME_rhs, by two programs */
-bool open_reference(struct measuring *m)
-{
-	if (find_reference(m))
-		return true;
-	const char *why = m->why;
-	const bool found = !m->events && (m->events = true) && find_reference(m);
-	m->why = why;
-	return found;
 }
 
 /* ---- one candidate ---- */
@@ -281,12 +237,12 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 	double worst = 0;
 	for (int i = 0; i < model->needs.requirements; i++) {
 		const double largest = m->drive ? m->largest[i] : largest_of(reference, i);
-		struct error_found found = { .known = true, .error = trial.error[i],
+		struct certificate found = { .known = true, .rounding = trial.error[i],
 					     .needed = needed_error(&model->needs.requirement[i], largest) };
-		const double over = found.error / found.needed;
+		const double over = found.rounding / found.needed;
 		worst = over <= worst ? worst : over;
-		if (spec && !(found.error <= a->found[i].error && a->found[i].known))
-			a->found[i] = found;
+		if (spec && !(found.rounding <= a->certificate[i].rounding && a->certificate[i].known))
+			a->certificate[i] = found;
 	}
 	if (spec) {
 		a->step_cost = cost_of_trial(&trial, model->needs.target, model->request.single);
@@ -345,7 +301,7 @@ void try_alternative(struct measuring *m, struct alternative *a)
 	a->measured = true;
 	a->name = ready.step  ? scheme_name(ready.step->model->scheme)
 		  : a->scheme ? a->scheme : scheme_name(m->model->scheme);
-	a->found = ARRAY(struct error_found, m->model->needs.requirements);
+	a->certificate = ARRAY(struct certificate, m->model->needs.requirements);
 	a->error_ratio = HUGE_VAL;
 	if (ready.r)
 		try_inputs(m, a, &ready);

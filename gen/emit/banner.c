@@ -503,7 +503,7 @@ static void banner_cost(const struct emitter *e)
 		       "rounded.\n", 8 * refresh_numbers(e->step));
 }
 
-/* Each need, and what was found: two lines */
+/* Each need, and what is certified: two lines */
 static void banner_needs(const struct emitter *e)
 {
 	for (int i = 0; i < e->model->needs.requirements && e->step->choice; i++)

@@ -8,7 +8,7 @@
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"
 
@@ -117,22 +117,22 @@ static bool forms_need_math(const struct emitter *e)
 	return math;
 }
 
-/* Errors that count on each product and each sum being rounded: they were found by running this C. */
+/* A certificate that counts on each product and each sum being rounded: it was found by running this C. */
 static void emit_as_written(const struct emitter *e)
 {
 	const struct choice *choice = e->step->choice;
 	if (!choice || !choice->alternative[choice->taken].as_written)
 		return;
 	say(e, "\n"
-	       "/* The need was met with sums and products that are each rounded, to the bits of their type. */\n"
+	       "/* What is certified counts on sums and products that are each rounded, to the bits of their type. */\n"
 	       "#if PL_EXCESS_PRECISION%s\n"
-	       "#error \"the need was met with sums that have the bits of their type: "
+	       "#error \"what is certified needs sums that have the bits of their type: "
 	       "on x86 compile it with -msse2 -mfpmath=sse\"\n"
 	       "#endif\n"
 	       "#if !defined PL_NOT_CONTRACTED && (defined __FP_FAST_FMA || defined __FP_FAST_FMAF || \\\n"
 	       "    defined __FMA__ || defined __FMA4__ || defined __ARM_FEATURE_FMA || defined __aarch64__ || \\\n"
 	       "    defined _M_ARM64 || defined _M_FP_CONTRACT)\n"
-	       "#error \"the need was met with products that are rounded before they are added: "
+	       "#error \"what is certified needs products that are rounded before they are added: "
 	       "compile it and the runtime with -ffp-contract=off, and with -DPL_NOT_CONTRACTED\"\n"
 	       "#endif\n", e->model->request.single ? "F" : "");
 }

@@ -22,7 +22,6 @@ bool rational_symmetric(int n, const mpq_t *A);
 /* numerators and denominators that may have factors in common: for who only rounds them */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
 void rational_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);
-double norm_of_rows(int n, const double *A);                /* the largest sum of sizes; infinite of NaN */
 
 /* ---- echelon.c: rows of rationals that come one by one ---- */
 
@@ -255,5 +254,30 @@ enum rise { RISE_NONE, RISE_AT, RISE_UNKNOWN };
 /* On 0 <= s <= end, value(0) at most 0, or not known apart from it. RISE_AT: `at` encloses the root, where it rises
  * with a slope above 0; RISE_UNKNOWN: it comes closer to 0 than is known. */
 enum rise first_rise(int degree, const mpfi_t *value, const mpfi_t *slope, mpfr_srcptr end, mpfi_ptr at);
+
+/* ---- walk.c: x+ = A x in double, step by step, and how far that rounds ---- */
+
+/* A <- D^-1 A D, D = diag(scale) powers of 2, so that rows and columns of A - I become alike in size: exact */
+void balance_map(int n, double *A, double *scale);
+double norm_of_rows(int n, const double *A);                /* the largest sum of sizes; infinite of NaN */
+struct sparse {                     /* the entries of a matrix that are not 0, row by row */
+	int rows, *start, *column;
+	double *value;
+};
+struct sparse sparse_of(int rows, int columns, const double *A);
+void sparse_free(const struct sparse *s);
+void sparse_add(const struct sparse *s, const double *x, double *sum);     /* sum + A x */
+struct spread {                     /* of A, over so many steps; both are bounds, n x n */
+	int n;
+	long steps;
+	double *sum, *most;         /* over m < steps of |A^m|; the largest of each entry */
+	double slack;               /* of what a walk in double finds, relative to the largest of its vector */
+	bool known;                 /* that is small */
+};
+struct spread spread_of(int n, const double *A, long steps);
+/* Sums over m < steps of |row A^m|, and the largest of each entry; `columns`: of |A^m row|. Not every power is walked
+ * through where they die away. */
+void reach_of_row(const struct spread *spread, const double *A, const double *row, bool columns, double *sum,
+		  double *most);
 
 #endif

@@ -2,8 +2,6 @@
 /* Rational matrices. */
 #include "math/math.h"
 
-#include <math.h>
-
 /* ---- blocks: rows and columns that have nothing in common with the others ---- */
 
 int root_of_node(int *parent, int i)
@@ -236,18 +234,4 @@ void rational_product(int rows, int inner, int columns, const mpq_t *A, const mp
 	unreduced_product(rows, inner, columns, A, B, AB);
 	for (int i = 0; i < rows * columns; i++)
 		mpq_canonicalize(AB[i]);
-}
-
-double norm_of_rows(int n, const double *A)
-{
-	double largest = 0;
-	for (int i = 0; i < n; i++) {
-		double sum = 0;
-		for (int j = 0; j < n; j++)
-			sum += fabs(A[i * n + j]);
-		largest = fmax(largest, sum);
-		if (isnan(sum))
-			return INFINITY;
-	}
-	return largest;
 }

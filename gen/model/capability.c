@@ -35,8 +35,7 @@ int output_named(const struct model *model, const char *name)
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
 bool is_measured(const struct model *model)
 {
-	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.force_columns > 0 ||
-			has_contacts(model) || tunables_of(model) || !steps_exactly(model);
+	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.force_columns > 0;
 	for (int i = 0; i < model->spec->required.needs && !measured; i++) {
 		const int o = output_named(model, model->spec->required.need[i].output);
 		const struct output *output = o < 0 ? NULL : &model->output[o];
@@ -51,16 +50,6 @@ static const struct output *bent_output(const struct model *model)
 	for (int i = 0; i < model->outputs; i++)
 		if (model->output[i].left)
 			return &model->output[i];
-	return NULL;
-}
-
-/* Of a tunable param that may have any value; NULL: there is none */
-static const char *rangeless_param(const struct model *model)
-{
-	const struct tuning *t = tunables_of(model);
-	for (int k = 0; t && k < t->given; k++)
-		if (!model->params.range[k])
-			return t->param[k].symbol->name;
 	return NULL;
 }
 

@@ -7,7 +7,6 @@
 
 /* ---- capability.c: what goes with what ---- */
 
-enum { MOST_ENDS = 4 };            /* tunable params whose ends are all combined */
 enum { MOST_ROW_LOADS = 16 };       /* each column takes numbers of its own to build, powers of t large ones */
 
 enum flow {                         /* how a state goes on, without events */

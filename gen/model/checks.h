@@ -66,7 +66,6 @@ struct target {                     /* a processor: what it takes of instruction
 };
 /* of the model that is stepped: its requirements, its target; false: it was said what stands in the way */
 bool find_requirements(struct model *model);
-double needed_error(const struct requirement *r, double largest);       /* of the output */
 
 /* ---- amplitudes.c ---- */
 

@@ -63,15 +63,12 @@ static void find_output(const struct finding *f)
 		      "'%s' is a peak: needs are of outputs that follow the state", need->output);
 }
 
-/* Now, or delayed; what stands for the delayed one or for a param has no bound of its own */
 static bool is_read(const struct spec *spec, const char *input)
 {
-	bool read = false;
-	for (const struct symbol *s = spec->first; s; s = s->next) {
-		const struct symbol *given = s->delayed ? s->delayed : s;
-		read = read || (s->used && s->kind == SYMBOL_INPUT && strcmp(given->name, input) == 0);
-	}
-	return read;
+	const struct symbol *s = spec->first;
+	while (s && strcmp(s->name, input) != 0)
+		s = s->next;
+	return !s || s->used;
 }
 
 /* Of one that nothing reads it does not matter how large it is. */
@@ -159,9 +156,4 @@ bool find_requirements(struct model *model)
 	if (spec->required.budget.instructions)
 		good = statement_guard(find_budget, model) && good;
 	return good;
-}
-
-double needed_error(const struct requirement *r, double largest)
-{
-	return mpq_get_d(r->bound) * (r->need->percent ? largest : 1);
 }

@@ -3,7 +3,7 @@
 #include "model/checks.h"
 #include "model/linear/modal_truncation.h"
 #include "report/report.h"
-#include "step/choice.h"
+#include "step/certify/certify.h"
 
 #include <math.h>
 #include <string.h>
@@ -38,23 +38,19 @@ const char *alternative_text(const struct alternative *a)
 	return format("%s%s%s", arithmetic_text(a), dropped ? "; " : "", dropped ? dropped : "");
 }
 
-static const char *inputs_text(const struct alternative *a)
+const char *certified_text(const struct alternative *a, int i)
 {
-	return a->inputs_tried ? format("the worst of %d inputs tried", a->inputs_tried) : "";
-}
-
-const char *error_text(const struct alternative *a, int i)
-{
-	const struct error_found *e = &a->found[i];
-	const char *word = e->exact ? "certified" : "measured";
+	const struct certificate *c = &a->certificate[i];
 	if (a->measured)
-		return format("measured %.2g (%s%s%s)", e->error, tried_text(a), a->inputs_tried ? "; " : "",
-			      inputs_text(a));
+		return format("measured %.2g (%s%s)", c->rounding, tried_text(a),
+			      a->inputs_tried ? format("; the worst of %d inputs tried", a->inputs_tried) : "");
 	const char *dropped = dropped_text(a);
 	if (!dropped)
-		return format("%s %.2g (rounding: %s)", word, e->error, arithmetic_text(a));
-	return format("%s %.2g (%.2g for %s%s; %s)", word, e->error, e->dropped, dropped,
-		      a->inputs_tried ? ", with any inputs" : "", arithmetic_text(a));
+		return format("certified %.2g (rounding: %s)", error_reported(c), arithmetic_text(a));
+	if (c->walked)
+		return format("certified %.2g (%.2g for %s; %s)", c->error, c->dropped, dropped, arithmetic_text(a));
+	return format("certified %.2g = %.2g (%s) + %.2g (%s)", c->rounding + c->dropped, c->dropped, dropped,
+		      c->rounding, arithmetic_text(a));
 }
 
 /* As written, a unit behind it too */
@@ -85,22 +81,25 @@ static const char *neighbours_text(const struct alternative *a)
 {
 	if (a->neighbours == 0)
 		return "";
-	const char *names = a->neighbour_names, *text = format(", of %.3g where ", 1 / a->worst_neighbour);
-	if (names)
-		text = format("%s%s %s 10 %% more or less", text, names, strchr(names, ',') ? "are each" : "is");
-	if (a->ends)
-		text = format("%s%s%s %s at ends of ranges", text, names ? ", or " : "", a->ends,
-			      strchr(a->ends, ',') ? "are" : "is");
-	return text;
+	return format(", of %.3g where %s %s 10 %% more or less", 1 / a->worst_neighbour, a->neighbour_names,
+		      a->neighbours > 2 ? "are each" : "is");
+}
+
+/* What was walked is true of products and sums that are each rounded. */
+static const char *contracted_text(const struct alternative *a, int i)
+{
+	const struct certificate *c = &a->certificate[i];
+	return !c->walked      ? ""
+	       : a->as_written ? "; a compiler that contracts products is refused"
+			       : format("; %.2g where a compiler contracts products", c->rounding + c->dropped);
 }
 
 const char *margin_text(const struct step *step, int i)
 {
 	const struct alternative *a = &step->choice->alternative[step->choice->taken];
-	return format("%s at every sample, a margin of %.3g%s%s%s%s", error_text(a, i),
-		      a->found[i].needed / a->found[i].error, a->measured || !a->inputs_tried ? "" : ", ",
-		      a->measured ? "" : inputs_text(a), neighbours_text(a),
-		      a->as_written ? "; a compiler that contracts products is refused" : "");
+	const struct certificate *c = &a->certificate[i];
+	return format("%s at every sample, a margin of %.3g%s%s", certified_text(a, i), c->needed / error_reported(c),
+		      neighbours_text(a), contracted_text(a, i));
 }
 
 static void text_alternative(FILE *to, const struct step *step, int i)
@@ -112,11 +111,11 @@ static void text_alternative(FILE *to, const struct step *step, int i)
 	}
 	fprintf(to, "    %c %7.0f  ", i == step->choice->taken ? '*' : ' ', a->cost);
 	if (a->why) {
-		fprintf(to, "%s: not measured, %s\n", alternative_text(a), a->why);
+		fprintf(to, "%s: not %s, %s\n", alternative_text(a), a->measured ? "measured" : "certified", a->why);
 		return;
 	}
 	for (int k = 0; k < step->model->needs.requirements; k++)
-		fprintf(to, "%s%s", k ? ", " : "", strchr(error_text(a, k), ' ') + 1);
+		fprintf(to, "%s%s", k ? ", " : "", strchr(certified_text(a, k), ' ') + 1);
 	if (a->error_ratio <= 1 && a->worst_neighbour > 0.99) {
 		fprintf(to, "; misses by a factor of %.3g where %s\n", a->worst_neighbour, a->worst_name);
 		return;
@@ -149,8 +148,8 @@ void text_needs(FILE *to, const struct step *step)
 	for (int i = 0; i < model->needs.requirements; i++)
 		fprintf(to, "    %s: %s\n", need_text(&model->needs.requirement[i]), margin_text(step, i));
 	const bool measured = choice->alternative[0].measured;
-	fprintf(to, "Alternatives (* taken; %s%s, the outputs counted; error):\n", unit_of_cost(model),
-		measured ? ", in a second of the model's time" : "");
+	fprintf(to, "Alternatives (* taken; %s%s, the outputs counted; %s):\n", unit_of_cost(model),
+		measured ? ", in a second of the model's time" : "", measured ? "error" : "bound of the error");
 	for (int i = 0; i < choice->alternatives; i++)
 		if (is_shown(choice, i))
 			text_alternative(to, step, i);
@@ -178,11 +177,12 @@ static void json_modes(FILE *to, const struct alternative *a)
 
 static void json_error(FILE *to, const struct alternative *a, int k)
 {
-	const struct error_found *e = &a->found[k];
-	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", e->exact ? "certified" : "measured", e->error);
+	const struct certificate *c = &a->certificate[k];
+	fprintf(to, "%s{\"%s\": %.17g, ", k ? ", " : "", a->measured ? "measured" : "certified", error_reported(c));
 	if (!a->measured)
-		fprintf(to, "\"dropped\": %s, ", json_number(e->dropped));
-	fprintf(to, "\"needed\": %.17g}", e->needed);
+		fprintf(to, "\"walked\": %s, \"dropped\": %s, \"rounding\": %s, ", c->walked ? "true" : "false",
+			json_number(c->dropped), json_number(c->known ? c->rounding : HUGE_VAL));
+	fprintf(to, "\"needed\": %.17g}", c->needed);
 }
 
 void json_needs(FILE *to, const struct step *step)

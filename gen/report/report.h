@@ -89,7 +89,7 @@ void program_normal(FILE *to, const struct step *step);
 
 const char *alternative_text(const struct alternative *a);  /* float, delta */
 const char *need_text(const struct requirement *r);         /* as written */
-const char *error_text(const struct alternative *a, int i); /* of a requirement: the error and its parts */
+const char *certified_text(const struct alternative *a, int i); /* of a requirement: the bound and its parts */
 const char *margin_text(const struct step *step, int i);    /* of the one taken, with the margin */
 void text_needs(FILE *to, const struct step *step);
 void json_needs(FILE *to, const struct step *step);          /* members of an object */

@@ -30,32 +30,20 @@ static double shape(int kind, double t, double until, const double *w, int count
 	return sin(w[kind - SQUARE] * t) >= 0 ? 1 : -1;
 }
 
-int sampled_inputs(const struct model *model)
+struct sampled drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
+		      const mpq_t *most)
 {
-	return model->delays ? model->delays->inputs : model->spec->count.inputs;
-}
-
-struct sampled inputs_at_rest(const struct model *model, double h, long samples)
-{
-	const int inputs = sampled_inputs(model);
+	const int inputs = system->inputs;
 	struct sampled d = { .inputs = inputs, .h = h, .samples = samples, .ramps = ARRAY(bool, inputs),
-			     .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
-	for (int i = 0; i < inputs; i++)
-		d.ramps[i] = model->system.input[i].hold > 0;
-	return d;
-}
-
-struct sampled drive_of(const struct model *model, int kind, const double *w, int count, double h, long samples,
-			const mpq_t *most)
-{
-	const int inputs = sampled_inputs(model);
-	struct sampled d = inputs_at_rest(model, h, samples);
+			   .sample = ARRAY(double, (size_t)(samples + 2) * (size_t)inputs) };
 	/* it changes sign once in half of the shortest period, on average */
 	const double chance = fmin(0.5, h * w[count - 1] / 3.14159265358979);
 	uint64_t state = UINT64_C(0x9e3779b97f4a7c15);
 	SCRATCH double *sign = ARRAY(double, inputs);
-	for (int i = 0; i < inputs; i++)
+	for (int i = 0; i < inputs; i++) {
+		d.ramps[i] = system->input[i].hold > 0;
 		sign[i] = 1;
+	}
 	for (long k = 0; k < samples + 2; k++)
 		for (int i = 0; i < inputs; i++) {
 			if ((double)(next_random(&state) >> 11) * 0x1p-53 < chance)

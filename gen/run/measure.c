@@ -49,9 +49,8 @@ struct trial trial_of(struct running *r, const struct course *reference, const d
 		running_step(r, u);
 		finite = compare_sample(&trial, r, reference, k + 1);
 		now = running_counted(r);
-		const int status = running_status(r) & ~PL_LEFT_RANGE;
-		if (status != 0)
-			trial.why = format("it ends with status %d at t = %.3g s", status, trial.until);
+		if (running_status(r) != 0)
+			trial.why = format("it ends with status %d at t = %.3g s", running_status(r), trial.until);
 		else if (now.multiplications - before.multiplications > LIMIT_MEASURED)
 			trial.why = "it takes too long to be measured";
 	}
@@ -62,86 +61,4 @@ struct trial trial_of(struct running *r, const struct course *reference, const d
 	trial.additions = (double)(now.additions - before.additions) / steps;
 	trial.calls = (double)(now.calls - before.calls) / steps;
 	return trial;
-}
-
-/* ---- courses ---- */
-
-double sample_time(const struct model *model)
-{
-	return mpq_get_d(model->delays ? model->delays->h : model->h);
-}
-
-double longest_need(const struct model *model)
-{
-	double until = 0;
-	for (int i = 0; i < model->needs.requirements; i++)
-		until = fmax(until, mpq_get_d(model->needs.requirement[i].until));
-	return until;
-}
-
-struct course *course_of(const struct model *model, double h)
-{
-	struct course *course = NEW(struct course);
-	*course = (struct course){ .needs = model->needs.requirements, .end = ARRAY(long, model->needs.requirements) };
-	for (int i = 0; i < course->needs; i++) {
-		course->end[i] = (long)floor(mpq_get_d(model->needs.requirement[i].until) / h * (1 + 1e-14));
-		course->samples = course->end[i] > course->samples ? course->end[i] : course->samples;
-	}
-	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->needs);
-	return course;
-}
-
-double apart(const struct course *a, const struct course *b, int need)
-{
-	double most = 0;
-	for (long k = 0; k <= a->end[need]; k++) {
-		const double d = fabs(a->value[k * a->needs + need] - b->value[k * b->needs + need]);
-		most = d <= most ? most : d;
-	}
-	return most;
-}
-
-double largest_of(const struct course *a, int need)
-{
-	double most = 0;
-	for (long k = 0; k <= a->end[need]; k++)
-		most = fmax(most, fabs(a->value[k * a->needs + need]));
-	return most;
-}
-
-void course_free(struct course *course)
-{
-	discard(course->value);
-	discard(course->end);
-	discard(course);
-}
-
-static void note_sizes(struct running *r, double *y, double *size)
-{
-	running_state(r, y);
-	for (int i = 0; i < running_step_of(r)->model->written->system.states; i++)
-		size[i] = fmax(size[i], fabs(y[i]));
-}
-
-struct course *run_of(struct running *r, const struct sampled *drive, const double *start, double *size)
-{
-	const struct model *model = running_step_of(r)->model;
-	struct course *c = course_of(model, sample_time(model));
-	SCRATCH double *u = ARRAY(double, model->system.inputs + 1);
-	SCRATCH double *y = ARRAY(double, model->written->system.states + 1);
-	running_start(r, 0, NULL);
-	if (drive)
-		running_drive(r, drive, 0);
-	if (start)
-		running_start(r, 0, start);
-	running_needed(r, c->value);
-	for (long k = 0; k < c->samples; k++) {
-		if (drive)
-			drive_step(drive, k, u);
-		running_step(r, u);
-		if (size)
-			note_sizes(r, y, size);
-		running_needed(r, c->value + (k + 1) * c->needs);
-	}
-	return c;
 }

@@ -137,8 +137,7 @@ static bool link_here(TCCState *tcc)
 
 struct native native_of(struct place at, const struct step *step, enum running_with with)
 {
-	const struct delays *delays = step->model->delays;
-	const char *name = delays ? delays->name : step->model->name, *message = "no memory that can run";
+	const char *name = step->model->name, *message = "no memory that can run";
 	char *text = text_of(step, with);
 	TCCState *tcc = need_memory(tcc_new());
 	struct native native = { 0 };

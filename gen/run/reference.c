@@ -237,22 +237,8 @@ static const char *reason_of(int status)
 				      : "a reference needs steps too short: the equations jump, or have no solution";
 }
 
-/* Friction and impacts have no NAME_rhs: another program is the road. */
-static struct course *ride(struct running *own, const struct roads *roads, const double *start, const char **why)
-{
-	struct course *course = run_of(own, roads->drive, start, roads->size);
-	const int status = running_status(own) & ~PL_LEFT_RANGE;
-	if (status == 0)
-		return course;
-	*why = format("a reference ends with status %d", status);
-	course_free(course);
-	return NULL;
-}
-
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why)
 {
-	if (roads->own[which])
-		return ride(roads->own[which], roads, start, why);
 	const struct step *step = running_step_of(roads->r);
 	size_t n = (size_t)step->model->written->system.states;
 	struct journey j = { .roads = roads, .states = (int)n, .before = operations_so_far(roads),
@@ -280,4 +266,51 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 	*why = reason_of(status);
 	course_free(course);
 	return NULL;
+}
+
+/* ---- what roads have found ---- */
+
+double longest_need(const struct model *model)
+{
+	double until = 0;
+	for (int i = 0; i < model->needs.requirements; i++)
+		until = fmax(until, mpq_get_d(model->needs.requirement[i].until));
+	return until;
+}
+
+struct course *course_of(const struct model *model, double h)
+{
+	struct course *course = NEW(struct course);
+	*course = (struct course){ .needs = model->needs.requirements, .end = ARRAY(long, model->needs.requirements) };
+	for (int i = 0; i < course->needs; i++) {
+		course->end[i] = (long)floor(mpq_get_d(model->needs.requirement[i].until) / h * (1 + 1e-14));
+		course->samples = course->end[i] > course->samples ? course->end[i] : course->samples;
+	}
+	course->value = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->needs);
+	return course;
+}
+
+double apart(const struct course *a, const struct course *b, int need)
+{
+	double most = 0;
+	for (long k = 0; k <= a->end[need]; k++) {
+		const double d = fabs(a->value[k * a->needs + need] - b->value[k * b->needs + need]);
+		most = d <= most ? most : d;
+	}
+	return most;
+}
+
+double largest_of(const struct course *a, int need)
+{
+	double most = 0;
+	for (long k = 0; k <= a->end[need]; k++)
+		most = fmax(most, fabs(a->value[k * a->needs + need]));
+	return most;
+}
+
+void course_free(struct course *course)
+{
+	discard(course->value);
+	discard(course->end);
+	discard(course);
 }

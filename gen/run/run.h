@@ -36,8 +36,6 @@ struct running;
 struct running *running_new(struct place at, const struct step *step, enum running_with with, const char **why);
 const struct step *running_step_of(const struct running *r);
 struct counted running_counted(const struct running *r);     /* of all instances of this code; 0 without counts */
-/* Tunable params, in each start by the spec; what NAME_retune says */
-int    running_retune(struct running *r, const double *params);
 void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */
 void   running_step(struct running *r, const double *u);     /* by h */
 void   running_state(struct running *r, double *y);
@@ -60,17 +58,15 @@ struct sampled {                      /* samples at t = 0, h, 2 h, ... */
 	bool *ramps;                /* per input: straight between samples; else a sample holds until the next */
 	double *sample;             /* [sample][input] */
 };
-int sampled_inputs(const struct model *model); /* of its step; delayed ones and those for params are others */
-struct sampled inputs_at_rest(const struct model *model, double h, long samples);    /* all 0 */
 /* One of drive_kinds(count): within `most`, by the frequencies w [rad/s], in rising order */
-struct sampled drive_of(const struct model *model, int kind, const double *w, int count, double h, long samples,
+struct sampled drive_of(const struct linear *system, int kind, const double *w, int count, double h, long samples,
 		      const mpq_t *most);
 int  drive_kinds(int count);
 void drive_step(const struct sampled *d, long k, double *u);           /* what step k is given */
 void drive_at(const struct sampled *d, long k, double t, double *u);   /* at t in step k: inputs, then their slopes */
 void running_drive(struct running *r, const struct sampled *d, long k); /* as if k steps were done; a start follows */
 
-/* ---- measure.c: courses of what needs are of ---- */
+/* ---- reference.c: the equations as written, solved by two roads ---- */
 
 struct course {                     /* what needs are of, at t = 0, h, 2 h, ... */
 	long samples, *end;         /* after the first: all, and of each need */
@@ -78,22 +74,11 @@ struct course {                     /* what needs are of, at t = 0, h, 2 h, ... 
 	double *value, *low;        /* [sample][need]; of an exact one its second word, else NULL */
 	bool kept;                  /* for another one to be tried */
 };
-double sample_time(const struct model *model);               /* [s] of a step of its C: of delays one has parts */
 double longest_need(const struct model *model);              /* [s] when the last ends */
 struct course *course_of(const struct model *model, double h); /* up to there, its values not known yet */
-/* at samples up to a need's end: the largest difference in its output, NaN where there is one; its largest size */
-double apart(const struct course *a, const struct course *b, int need);
-double largest_of(const struct course *a, int need);
-void course_free(struct course *course);
-/* From this start (NULL: the spec's); drive NULL: inputs 0; size: the largest of each state, or NULL */
-struct course *run_of(struct running *r, const struct sampled *drive, const double *start, double *size);
-
-/* ---- reference.c: the equations as written, solved by two roads ---- */
-
 enum { ROADS = 2 };
 struct roads {                      /* of NAME_rhs: two methods that have nothing in common but it */
 	struct running *r;          /* in double */
-	struct running *own[ROADS]; /* programs in the place of NAME_rhs; NULL: there are none */
 	double h, until;            /* [s] */
 	int changes;                /* of formula in time, at which a method starts anew */
 	const double *change;
@@ -105,25 +90,15 @@ struct roads {                      /* of NAME_rhs: two methods that have nothin
 };
 /* From these states (NULL: the spec's) by the first road or the second; NULL: *why */
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why);
+/* at samples up to a need's end: the largest difference in its output, NaN where there is one; its largest size */
+double apart(const struct course *a, const struct course *b, int need);
+double largest_of(const struct course *a, int need);
+void course_free(struct course *course);
+
 /* ---- exact.c: closed forms of a linear model ---- */
 
 /* Of the equations of `full` for the needs of `stepped`; NULL: there are inputs, or it would take too long */
 struct course *exact_course_of(const struct model *full, const struct model *stepped);
-
-/* ---- response.c: what inputs do to the outputs of a linear step at worst ---- */
-
-struct input_response {
-	int inputs;
-	struct course *still, **by; /* with inputs 0; what is added by one sample of each, of this size */
-	double *size;
-};
-struct input_response input_response_of(struct running *r, const mpq_t *most);
-void input_response_less(struct input_response *a, const struct input_response *b);  /* a - b, in a */
-/* Of inputs within a need's bounds: how large its output is at most, at every sample; what it surely reaches, by: */
-double worst_of(const struct input_response *r, int need, const mpq_t *most);
-double reached_by(const struct input_response *r, int need, const mpq_t *most);
-struct sampled worst_inputs(const struct input_response *r, int need, const struct model *model, const mpq_t *most);
-void input_response_free(struct input_response *r);
 
 /* ---- measure.c: how far the outputs of a step are off ---- */
 

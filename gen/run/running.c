@@ -12,7 +12,7 @@ struct running {
 	int states, inputs, outputs;
 	bool single;
 	void *instance;
-	void *y, *u, *out, *slope, *params; /* of the target's type; params: NULL: the spec's */
+	void *y, *u, *out, *slope;  /* of the target's type */
 };
 
 /* A function of the descriptor, which has two types */
@@ -37,7 +37,7 @@ struct running *running_new(struct place at, const struct step *step, enum runni
 		return NULL;
 	struct running *r = NEW(struct running);
 	*r = (struct running){ .step = step, .native = o.native,
-			       .states = model->written->system.states, .inputs = sampled_inputs(model),
+			       .states = model->written->system.states, .inputs = model->system.inputs,
 			       .outputs = model->outputs, .single = model->request.single };
 	r->instance = allocate(1, CALL(r, size));
 	r->y = ARRAY(double, r->states + 1);
@@ -73,20 +73,10 @@ static void from_target(const struct running *r, const void *from, double *to, i
 		to[i] = r->single ? (double)((const float *)from)[i] : ((const double *)from)[i];
 }
 
-int running_retune(struct running *r, const double *params)
-{
-	r->params = ARRAY(double, CALL(r, params));
-	to_target(r, params, r->params, CALL(r, params));
-	CALL(r, init(r->instance));
-	return CALL(r, retune(r->instance, r->params, CALL(r, h)));
-}
-
 void running_start(struct running *r, double t, const double *y)
 {
 	if (!y) {
 		CALL(r, init(r->instance));
-		if (r->params)
-			CALL(r, retune(r->instance, r->params, CALL(r, h)));
 		return;
 	}
 	to_target(r, y, r->y, r->states);

@@ -148,7 +148,7 @@ static struct facts facts_of(const bool *row)
 	f.recipe = f.left && !f.normal && (f.approximates || (f.recipe && !f.contacts));
 	f.curved = f.left;
 	f.inexact = f.left || f.holds;
-	f.measured = f.left || f.regions || f.tunable || f.inexact;
+	f.measured = f.left || f.regions;
 	f.tuned = f.tunable && !f.left;         /* else params are held, as inputs are */
 	return f;
 }
@@ -511,8 +511,6 @@ static void print_options(FILE *to)
 			fprintf(to, " %s", option[i][1]);
 			scheme = scheme || strncmp(option[i][1], "--scheme", 8) == 0;
 		}
-	if (has("need") && has("tunable") && !has("float"))     /* the model of other values is in double */
-		fputs(" --real double", to);
 	if (has("modes"))       /* all of them; what no output sees is left out */
 		fprintf(to, " --modes %d", 2 + has("first") + has("parts") + (has("many") ? 7 : has("file") ? 3 : 0));
 	scheme = scheme || has("taylor12") || has("over3");
@@ -564,17 +562,13 @@ static void write_chain(FILE *to, int n)
 static void write_need(FILE *to, const char *output)
 {
 	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
-			      moves() || has("tunable") || has("friction") || has("impact") || has("pl");
+			      moves();
 	fprintf(to, "need %s within %s until 0.5", output,
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? has("modal") ? "5e-3" : "1e-4" : measured ? "1e-6" : "1e-9");
-	const char *between = " for ";
-	for (int i = 0; i < 3; i++)
-		if (has((const char *[]){ "held", "ramp", "delayed" }[i])) {
-			fprintf(to, "%s|%c| <= 2", between, "uvd"[i]);
-			between = ", ";
-		}
-	fputs("\n", to);
+	fputs(has("held") || has("ramp") ? " for " : "", to);
+	fprintf(to, "%s%s%s\n", has("held") ? "|u| <= 2" : "", has("held") && has("ramp") ? ", " : "",
+		has("ramp") ? "|v| <= 2" : "");
 }
 
 /* Two masses and what else is asked for; without dampers where the form asks for that.  Frequencies: below 6 rad/s. */
@@ -586,7 +580,7 @@ static void write_spec(FILE *to)
 	const int n = has("many") ? 7 : 3;
 	print_options(to);
 	fputs("model f\nparam k = 12\n", to);
-	fputs(!has("tunable") ? "" : has("need") ? "tunable k in [10, 18]\n" : "tunable k\n", to);
+	fputs(has("tunable") ? "tunable k\n" : "", to);
 	if (has("parts"))
 		fprintf(to, "use \"part.spec\" as p%s with k = k/3, x = 0.1%s%s\n", outputs ? ", unused" : "",
 			has("cos") ? ", pull = cos(4*t)" : ", pull = 0",

@@ -250,8 +250,7 @@ batch_add() {
 			*step=*) ;;
 			*) less="$less$(printf '%s\n' "$given" | grep -o ' --step [^ ]*')" ;;
 		esac
-		grep -v '^need' "$spec" >"$id.tuned.spec"       # its type is double, as of the one that is retuned
-		if ! make_c "$tuned" "$id.tuned.spec" \
+		if ! make_c "$tuned" "$spec" \
 			"$less $(printf '%s\n' "$retune" |
 				sed 's/ step=/ --step /; s/ \([A-Za-z_0-9]*=\)/ -D \1/g')"; then
 			why=$(why_refused "$tuned" 1)

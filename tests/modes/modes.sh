@@ -2,10 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Models of some modes: against sums over modes in closed form (closed.c), and against the whole model (whole.c).
 #
-#     modes.sh PLGEN SOURCE_ROOT
+#     modes.sh PLGEN SOURCE_ROOT DROPPED
 set -u
 plgen=$1
 root=$2
+dropped=$3
+case $dropped in /*) ;; *) dropped=$PWD/$dropped ;; esac
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 here=$root/tests/modes
@@ -80,6 +82,23 @@ against mixed 4 -DINPUTS
 against mixed 2 '-DINPUTS -DSETTLES=40'
 against repeated 4 '-DALL -DINPUTS'
 against repeated 2 '-DINPUTS -DSETTLES=250'
+# loses NAME MODES FLAGS: modes_dropped, too
+loses() {
+	{
+		"$dropped" "$1.spec" "$2" dropped >dropped.c && "$dropped" "$1.spec" "$2" dropped header >dropped.h &&
+			$run_cc -I"$root/runtime" -c dropped.c -o dropped.o
+	} >log 2>&1
+	result $? "$1, modes $2: a model of what is lost"
+	archive="dropped.o $whole_archive"
+	against "$1" "$2" "-DDROPPED $3"
+}
+
+whole_archive=$archive
+loses chain 3 ''
+loses local_dampers 2 ''
+loses mixed 2 -DINPUTS
+loses beam 6 ''
+archive=$whole_archive
 for form in direct delta modal; do
 	against chain 3 '' --form $form
 done

@@ -2,7 +2,7 @@
 /* A model of modes against the whole model, both as C: project times a state of the whole is the state of the one
  * that is smaller, at any time and from any start, under loads and inputs; expand gives back what starts in the kept
  * modes; and outputs. -DALL: nothing is dropped, outputs are the same. -DSETTLES=T: after T what is dropped is at rest,
- * and outputs are the same, an input being held. -DLOST={...}: outputs differ
+ * and outputs are the same, an input being held. -DDROPPED: a model of what outputs lose. -DLOST={...}: outputs differ
  * by no more, inputs 0. */
 #include "part.h"
 #include "whole.h"
@@ -164,6 +164,39 @@ static void same_outputs(int from, const double *most, double tolerance)
         judge(worst[i], most ? most[i] + 1e-13 * size[i] : size[i], tolerance, "output", i);
 }
 
+#ifdef DROPPED
+#include "dropped.h"
+
+/* What is lost, as a model of its own */
+static void lost_outputs(void)
+{
+    static dropped lost;
+    double worst[OUTPUTS] = {0}, size[OUTPUTS] = {0}, p[OUTPUTS], q[OUTPUTS], e[OUTPUTS];
+    int n, i;
+    whole_init(&a);
+    part_init(&b);
+    dropped_init(&lost);
+    for (n = 0; n < STEPS; n++) {
+        whole_out(&a, p);
+        part_out(&b, q);
+        dropped_out(&lost, e);
+        for (i = 0; i < OUTPUTS; i++) {
+            worst[i] = worse(worst[i], fabs(p[i] - q[i] - e[i]));
+            size[i] = fmax(size[i], fabs(p[i]));
+        }
+        advance_whole(&a, n);
+        advance_part(&b, n);
+#ifdef INPUTS
+        dropped_step(&lost, input_at(n));
+#else
+        dropped_step(&lost);
+#endif
+    }
+    for (i = 0; i < OUTPUTS; i++)
+        judge(worst[i], size[i], 1e-13, "what output loses", i);
+}
+#endif
+
 static void inverse_matrices(void)
 {
     int i, j, k;
@@ -192,6 +225,9 @@ int main(void)
 #endif
     same_states();
     same_motion();
+#ifdef DROPPED
+    lost_outputs();
+#endif
 #ifdef ALL
     same_outputs(0, 0, 1e-13);
 #endif

@@ -2,12 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Random models with needs (random.awk): what is emitted is compiled and run, and at every sample up to the end of the
 # need its output is within the bound of the exact one, which --solution gives from residues, correctly rounded. What
-# is certified is the largest error there is, within a hundredth.
+# is certified is at most three times the largest error there is, in the median one and a half times.
 # needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds
 # needs.sh PLGEN HERE RUNTIME changes: changes.spec, whose load changes its formula; and that its C, which is certified
 # as it is written, refuses a compiler that may contract products
 # needs.sh PLGEN HERE RUNTIME drivetrain: models/drivetrain.spec, a scene of parts, with a need
-# needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and two fifths of the cost
+# needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and a third of the cost
 # PLRT in the environment: the runtime as an archive.
 plgen=$1 here=$2 runtime=$3 first=$4 last=${5:-}
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
@@ -50,12 +50,12 @@ for seed in $seeds; do
 		./run "$(wc -l <exact.csv)" >got || { echo "not ok - seed $seed: no program"; exit 1; }
 	sed -n '/"taken": true/{
 		s/.*"real": "\([^"]*\)"\(.*\)/\2 \1/
-		s/.*"certified": \([^,]*\), "dropped": \([^,]*\),/\1 \2/
+		s/.*"certified": \([^,]*\),.*"dropped": \([^,]*\), "rounding": \([^,]*\),/\1 \2 \3/
 		s/ "needed": \([^}]*\)}[^ ]*/ \1/p
 	}' drawn.json >bound
 	paste -d' ' got exact.csv | tr , ' ' | awk -v seed="$seed" '
 		NR == FNR {
-			bound = $1; dropped = $2; needed = $3; real = $4
+			bound = $1; dropped = $2; contracted = $3 == "null" ? 1e99 : $2 + $3; needed = $4; real = $5
 			next
 		}
 		{
@@ -64,9 +64,11 @@ for seed in $seeds; do
 		}
 		END {
 			spare = 2.3e-16 * size  # what reading both here rounds
-			good = worst <= bound + spare && bound <= needed && bound <= 1.01 * worst + 3 * spare
-			printf "%s - seed %s: error %.3g, certified %.3g, need %.3g, dropped modes %.3g, %s\n",
-				good ? "ok" : "not ok", seed, worst, bound, needed, dropped, real
+			good = worst <= bound + spare && bound <= needed && bound <= 3 * worst + 3 * spare &&
+			       bound <= contracted
+			printf "%s - seed %s: error %.3g, bound %.3g, need %.3g, dropped modes %.3g, contracted " \
+				"%.3g, %s\n", good ? "ok" : "not ok", seed, worst, bound, needed, dropped,
+				contracted, real
 		}' bound - >line
 	cat line
 	cat line >>lines
@@ -80,18 +82,16 @@ if [ "$first" = beam ]; then
 		$2 == "true" { taken = $3; modes = $0 }
 		END {
 			split(modes, kept, /[- ]/)
-			good = kept[1] == 1 && kept[2] <= 6 && 2.5 * taken <= all
+			good = kept[1] == 1 && kept[2] <= 6 && 3 * taken <= all
 			printf "%s - modes %s-%s of 15 kept, cost %s of %s\n", good ? "ok" : "not ok", kept[1], kept[2],
 				taken, all
 			exit !good
 		}' || bad=1
 fi
 if [ "$first" = changes ]; then
-	kept=$(grep -c '"modes": "1-3".*"taken": true' drawn.json)
-	sed 's/within [^ ]*/within 2e-7/' drawn.spec | "$plgen" - >drawn_pl.c || exit 1
 	compile="${CC:-cc} -O0 -ffp-contract=off -D__FP_FAST_FMAF -I$runtime -w -c drawn_pl.c -o object"
 	if ! $compile 2>errors && grep -q 'products that are rounded' errors && $compile -DPL_NOT_CONTRACTED &&
-		[ "$kept" = 1 ]; then
+		grep -q '"modes": "1-3".*"taken": true' drawn.json; then
 		echo "ok - modes 1-3; contraction is refused"
 	else
 		echo "not ok - modes 1-3; contraction is refused"
@@ -105,8 +105,8 @@ if [ $met -gt 9 ]; then
 		END {
 			median = ratio[int((NR + 1) / 2)]
 			printf "%s - certified over error: %.3g in the median, %.3g at most\n",
-				median <= 1.01 ? "ok" : "not ok", median, ratio[NR]
-			exit !(median <= 1.01)
+				median <= 1.5 ? "ok" : "not ok", median, ratio[NR]
+			exit !(median <= 1.5)
 		}' || bad=$((bad + 1))
 fi
 echo "# $met met, $unmet cannot be met, $bad wrong"

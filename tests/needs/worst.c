@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A model with a need for any input within a bound, beside the same of all modes: the difference of their responses to
- * one sample tells what the worst input is. Driven by it, the output is as wrong as was told, and not more.
- * worst STEPS MOST TOLD */
+ * one sample tells what the worst input is. Driven by it, the output is as wrong as was certified, and not more.
+ * worst STEPS MOST CERTIFIED */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -32,7 +32,7 @@ int main(int argc, char **argv)
 {
 	static double u[ROOM], h[ROOM], e[ROOM];
 	const long steps = argc > 3 ? atol(argv[1]) : 0;
-	const double most = argc > 3 ? atof(argv[2]) : 0, told = argc > 3 ? atof(argv[3]) : 0;
+	const double most = argc > 3 ? atof(argv[2]) : 0, certified = argc > 3 ? atof(argv[3]) : 0;
 	double sum = 0, worst = 0;
 	if (steps < 1 || steps > ROOM)
 		return 1;
@@ -45,8 +45,8 @@ int main(int argc, char **argv)
 	run(steps, u, e);
 	for (long k = 0; k < steps; k++)
 		worst = e[k] == e[k] ? fmax(worst, fabs(e[k])) : INFINITY;
-	const int good = worst <= told && worst >= 0.999 * told && fabs(sum - worst) <= 1e-9 * worst;
-	printf("%s - %s: told %.9g, worst input %.9g, sum over samples %.9g\n", good ? "ok" : "not ok",
-	       argv[0], told, worst, sum);
+	const int good = worst <= certified && worst >= 0.999 * certified && fabs(sum - worst) <= 1e-9 * worst;
+	printf("%s - %s: certified %.9g, worst input %.9g, sum over samples %.9g\n", good ? "ok" : "not ok",
+	       argv[0], certified, worst, sum);
 	return !good;
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What is told of dropped modes for any input within a bound is attained by one: driven.spec, held and as a ramp. Of
-# one mode the largest value is known in closed form: gain.spec.
+# What is certified for any input within a bound is attained by one: driven.spec, held and as a ramp. Of one mode the
+# largest value is known in closed form: gain.spec.
 # worst.sh PLGEN HERE RUNTIME; PLRT in the environment: the runtime as an archive
 plgen=$1 here=$2 runtime=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
@@ -20,9 +20,9 @@ for hold in held ramp; do
 		"$plgen" --real double --prefix whole -o whole_pl.c whole.spec &&
 		${CC:-cc} -O1 -w -I. -I"$runtime" "$here/worst.c" chosen_pl.c whole_pl.c "$PLRT" -lm -o $hold ||
 		exit 1
-	told=$("$plgen" --real double --explain=json driven.spec |
-		sed -n '/"taken": true/s/.*"measured": \([^,]*\).*/\1/p')
-	./$hold 2000 3 "$told" || bad=1
+	certified=$("$plgen" --real double --explain=json driven.spec |
+		sed -n '/"taken": true/s/.*"certified": \([^,]*\).*/\1/p')
+	./$hold 2000 3 "$certified" || bad=1
 done
 "$plgen" --explain=json "$here/gain.spec" | sed -n '/"taken": true/s/.*"needed": \([^}]*\)}.*/\1/p' | awk '{
 	angle = 3.14159265358979 * 0.05 / (2 * sqrt(1 - 0.05 * 0.05))

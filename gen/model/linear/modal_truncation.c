@@ -105,13 +105,14 @@ struct following {
 	const struct mode *mode;
 	mpq_t **c;                  /* per output: its row over z */
 	struct output *output;      /* gets c P */
+	bool minus;                 /* less c P instead */
 };
 
 static void add_rows(const struct following *f, int output, const mpq_t *x, mpq_ptr to)
 {
 	RATIONALS *sum = rationals(1);
 	rational_product(1, f->mode->states, 1, f->c[output], x, sum);
-	mpq_add(to, to, sum[0]);
+	(f->minus ? mpq_sub : mpq_add)(to, to, sum[0]);
 }
 
 static mpq_srcptr frequency_of(const struct load *load)
@@ -164,10 +165,11 @@ static mpq_t *row_over(const struct modes *modes, const struct mode *mode, const
 }
 
 /* The outputs get what this mode follows loads and inputs by; false: it was not found */
-static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct output *output)
+static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct output *output, bool minus)
 {
 	const struct model *model = modes->model;
-	struct following f = { .modes = modes, .inverse = inverse, .mode = &modes->mode[index], .output = output };
+	struct following f = { .modes = modes, .inverse = inverse, .mode = &modes->mode[index], .output = output,
+			       .minus = minus };
 	bool any = false;
 	if (!mode_refine(modes, index))
 		return false;
@@ -186,8 +188,8 @@ static bool follow(struct modes *modes, int index, const mpq_t *inverse, struct 
 
 /* ---- the model ---- */
 
-/* Rows over the states of the selection; of loads and inputs as they are */
-static struct output *rows_over(const struct selection *s)
+/* Rows over the states of the selection; of loads and inputs as they are, or 0 */
+static struct output *rows_over(const struct selection *s, bool direct)
 {
 	const struct model *model = s->modes->model;
 	const struct linear *system = &model->system;
@@ -206,10 +208,11 @@ static struct output *rows_over(const struct selection *s)
 		output[o].load = ARRAY(mpq_t *, system->loads);
 		for (int l = 0; l < system->loads; l++) {
 			const size_t cells = (size_t)(system->load[l].columns * system->segments);
-			output[o].load[l] = rationals_copied(cells, of->load[l]);
+			output[o].load[l] = direct ? rationals_copied(cells, of->load[l]) : rationals(cells);
 		}
 		for (int k = 0; k < 2; k++)
-			output[o].input[k] = rationals_copied(system->inputs, of->input[k]);
+			output[o].input[k] = direct ? rationals_copied(system->inputs, of->input[k])
+				       : rationals(system->inputs);
 	}
 	return output;
 }
@@ -263,7 +266,8 @@ static struct modal_truncation *modal_truncation_of(const struct selection *s, b
 	return of;
 }
 
-static struct model *model_of(const struct selection *s, bool static_correction)
+/* `direct`: what outputs read of loads and inputs at once comes with them. */
+static struct model *model_of(const struct selection *s, bool direct, bool static_correction)
 {
 	const struct model *model = s->modes->model;
 	struct model *shorter = NEW(struct model);
@@ -283,7 +287,7 @@ static struct model *model_of(const struct selection *s, bool static_correction)
 		    &(struct projecting){ s, inverse_of_leading(&model->system) });
 	project_start(s, shorter->initial);
 	shorter->equations.highest = ARRAY(struct output *, s->coords);
-	shorter->output = rows_over(s);
+	shorter->output = rows_over(s, direct);
 	shorter->truncated = modal_truncation_of(s, static_correction);
 	shorter->reduction.place = ARRAY(int, model->system.states);
 	for (int i = 0; i < model->system.states; i++)
@@ -291,12 +295,12 @@ static struct model *model_of(const struct selection *s, bool static_correction)
 	return shorter;
 }
 
-static bool follow_dropped(struct modes *modes, const bool *kept, struct output *output)
+static bool follow_dropped(struct modes *modes, const bool *kept, struct output *output, bool minus)
 {
 	RATIONALS *inverse = inverse_of_leading(&modes->model->system);
 	bool good = true;
 	for (int i = 0; i < modes->count && good; i++)
-		good = kept[i] || follow(modes, i, inverse, output);
+		good = kept[i] || follow(modes, i, inverse, output, minus);
 	return good;
 }
 
@@ -305,10 +309,24 @@ struct model *modes_kept(struct modes *modes, const bool *kept, bool static_corr
 	struct selection s = { .modes = modes, .of = kept };
 	if (!select_modes(&s) || s.states == 0)
 		return NULL;
-	struct model *shorter = model_of(&s, static_correction);
-	if (static_correction && !follow_dropped(modes, kept, shorter->output))
+	struct model *shorter = model_of(&s, true, static_correction);
+	if (static_correction && !follow_dropped(modes, kept, shorter->output, false))
 		return NULL;
 	return shorter;
+}
+
+struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_correction)
+{
+	bool *dropped = ARRAY(bool, modes->count);
+	struct selection s = { .modes = modes, .of = dropped };
+	for (int i = 0; i < modes->count; i++)
+		dropped[i] = !kept[i];
+	if (!select_modes(&s) || s.states == 0)
+		return NULL;
+	struct model *error = model_of(&s, false, false);
+	if (static_correction && !follow_dropped(modes, kept, error->output, true))
+		return NULL;
+	return error;
 }
 
 double truncation_of_modes(const struct modes *modes, const bool *kept, bool static_correction, int output)

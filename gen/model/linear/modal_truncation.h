@@ -63,17 +63,22 @@ int *modes_by_share(const struct modes *modes);
  *     struct modes *modes = modes_of(model, &why);
  *     bool *kept = ARRAY(bool, (size_t)modes->count);
  *     ... kept[i] = true ...                  modes->mode[i].size, transient, by_input say what each would add
+ *     struct model *error = modes_dropped(modes, kept, true);     what would be lost, exactly
  *     struct model *shorter = modes_kept(modes, kept, true);      what is stepped: step_build(shorter)
  *
- * It is an ordinary rational linear model with an own block of `system` for each mode, so its B(s) have degree 2 and
- * residues are cheap. `written` of it is the model.
+ * Both are ordinary rational linear models with an own block of `system` for each mode, so their B(s) have degree 2 and
+ * residues are cheap: output i of `modes_dropped` is e_i(t) = output i of the model less that of `modes_kept`, under
+ * the same loads (rows `load` of its outputs), inputs (rows `input`) and from its own `initial`. With r = c e^{block t}
+ * of a mode, e(t) = sum over dropped modes of r (z(0) - P q(0)) where the forced parts P q(t) of loads q are kept, and
+ * for inputs h_e = r left b, less the static gain. `written` of both is the model.
  *
  * `statics`: what is dropped still follows its loads and inputs at once: the outputs get the forced part of what is
  * dropped for each load, and its static gain for each input (rows `load` and `input` of struct output; no states).
  * What is dropped has rigid modes, or a load has a pole of it: that part is not kept.
- * NULL: a mode is not found (mode_refine).
+ * NULL: a mode is not found (mode_refine), or, of modes_dropped, none is dropped.
  */
 struct model *modes_kept(struct modes *modes, const bool *kept, bool static_correction);
+struct model *modes_dropped(struct modes *modes, const bool *kept, bool static_correction);
 /* The largest that output can lose by what is dropped, from the start and by loads, at any time; HUGE_VAL: no bound.
  * In double precision. */
 double truncation_of_modes(const struct modes *modes, const bool *kept, bool static_correction, int output);

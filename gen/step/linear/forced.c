@@ -13,8 +13,8 @@
  * each by factors of its own, and the bound is of these too. */
 #include "model/linear/relative.h"
 #include "step/cost.h"
-#include "course.h"
 #include "forms.h"
+#include "step/certify/step_map.h"
 #include "step/tapes.h"
 
 #include <math.h>
@@ -122,15 +122,6 @@ static bool fill_forced(const struct linear *system, int l, const mpq_t *written
 }
 
 /* ---- a bound of rounding ---- */
-
-/* Additions above each of so many terms that are added in pairs */
-static int levels(int terms)
-{
-	int levels = 0;
-	while (1 << levels < terms)
-		levels++;
-	return levels;
-}
 
 /* what the program computes, and how far it may be off, in units of rounding */
 struct rounded { double value, error; };

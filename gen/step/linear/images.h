@@ -46,6 +46,8 @@ int responses_of_output(struct resolvent *r, const struct linear *system, const 
 struct output state_as_output(const struct linear *system, int state); /* read alone */
 struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
 				 int input, mpq_srcptr value, mpq_srcptr slope);
+/* its value, rational or the nearest of 256 bits */
+void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
 
 /* ---- frequencies.c: natural frequencies and damping ratios ---- */
 

@@ -36,8 +36,6 @@ struct response *response_of_load(struct resolvent *r, const struct linear *syst
 				  int column);
 struct response *response_of_phi_weight(struct resolvent *r, const struct linear *system, int i, int force_column,
 				    const struct phi_weight_part *part, mpq_srcptr h);
-/* the value of a load state, rational or the nearest of 256 bits */
-void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
 /* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
  * segment of time; of an input u = value + slope tau, from rest */
 struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);
