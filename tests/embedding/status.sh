@@ -73,9 +73,9 @@ int main(void)
 #ifdef COMPENSATED
     for (i = 0; i < N; i++) {
         m->init(&s);
-        s.rest[i] = (real)NAN;
+        s.low[i] = (real)NAN;
         if (linear_status(&s) != PL_NOT_FINITE && bad++ < 5)
-            printf("rest[%d] not a number: found %d, expected %d\n", i, linear_status(&s), PL_NOT_FINITE);
+            printf("low[%d] not a number: found %d, expected %d\n", i, linear_status(&s), PL_NOT_FINITE);
     }
 #endif
     /* out of range step by step, where the model grows */

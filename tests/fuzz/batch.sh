@@ -144,7 +144,7 @@ facts_of() {
 		/^ \* / { banner = banner substr($0, 3) }
 		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
 		/^ \*     switching function [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
-		/is kept apart from what moves in it:/ && !lists++ {
+		/are kept apart from relative coordinates:/ && !lists++ {
 			sub(/;.*/, "")
 			apart = $0 " "
 			gsub(/[^A-Za-z0-9_]/, " ", apart)

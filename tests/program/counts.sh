@@ -26,7 +26,7 @@ done
 # stated FILE.spec OPTIONS: multiplications and additions of a step, peaks looked for
 stated() {
 	"$plgen" --explain=json "$@" 2>>log | tr -d '\n' |
-		sed 's/.*"cost"//; s/"loads": [^}]*}//; s/"rows": [^}]*}//; s/[^0-9]\{1,\}/ /g' |
+		sed 's/.*"cost"//; s/"board": {[^}]*}//; s/"loads": [^}]*}//; s/"rows": [^}]*}//; s/[^0-9]\{1,\}/ /g' |
 		awk '{ print $1 + $3, $2 + $4 }'
 }
 

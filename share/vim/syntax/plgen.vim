@@ -8,13 +8,14 @@ syntax case match
 syntax match   plgenStatement "^\s*\(model\|param\|coord\|init\|let\|input\)\>"
 syntax match   plgenStatement "^\s*\(output\|matrix\|mass\|spring\|damper\|force\)\>"
 syntax match   plgenStatement "^\s*\(step\|scheme\|operator\|tunable\|tolerance\|substeps\|modes\|use\)\>"
-syntax match   plgenStatement "^\s*\(need\|budget\|when\|stop\|friction\|range\)\>"
+syntax match   plgenStatement "^\s*\(need\|budget\|energy\|dissipation\|when\|stop\|friction\|range\)\>"
 syntax keyword plgenWord at hold first third fifth seventh between on ground as with
 syntax keyword plgenWord within until for instructions without static restitution
 syntax keyword plgenWord absolute of in
 syntax keyword plgenConstant t pi
 syntax match   plgenFunction "\<\(sin\|cos\|tan\|exp\|log\|sqrt\|abs\|sgn\|sinh\|cosh\|tanh\|asin\)\ze\s*("
 syntax match   plgenFunction "\<\(acos\|atan\|atan2\|min\|max\|deadzone\|clip\|table\|peak\|friction\)\ze\s*("
+syntax match   plgenFunction "\<\(sum\|cumsum\|dot\)\ze\s*("
 syntax keyword plgenScheme exact pl etd1 etdrk2 etdrk4 nc2 nc3 dq4 bm3 taylor radau auto etdam4 etdam5 etdam6 etdcol
 syntax match   plgenNumber "\<\d\+\(\.\d*\)\?\([eE][-+]\?\d\+\)\?"
 syntax match   plgenNumber "\.\d\+\([eE][-+]\?\d\+\)\?"
