@@ -65,4 +65,27 @@ for spec in "$cases"/*.spec; do
 		check "$name" "$name, $scheme" "$within" --scheme "$scheme"
 	done 3<schemes
 done
+# The Jacobian of the accelerations against their differences: K of the linear equations at a point, whose M is 1
+cat >slope.spec <<'SPEC'
+model slope
+param p = 1
+coord q1, q2
+2*q1'' + cos(q1 - q2)*q2'' + sin(q1 - q2)*q2'^2 + 2*9.81*sin(q1) = 0
+cos(q1 - q2)*q1'' + q2'' - sin(q1 - q2)*q1'^2 + 9.81*sin(q2) = 0
+init q1 = p, q2 = 0.5
+output a1 = q1'', a2 = q2''
+step 0.01
+SPEC
+# accelerations P: at q1 = P, as two numbers
+accelerations() {
+	"$plrun" -D "p=$1" slope.spec 0.01 2>>log | sed -n '2s/,/ /gp' | cut -d ' ' -f 2,3
+}
+: >log
+"$PLGEN" --at q1=1,q2=0.5 --explain=json slope.spec 2>>log | tr -d ' \n[]' | sed 's/.*"K"://; s/"B".*//; s/,/ /g' >K
+echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cat K)" | awk '
+	{ a = -($1 - $3)/2e-5; b = -($2 - $4)/2e-5
+	  print "differences " a " " b ", K " $5 " " $7
+	  near = (a - $5)^2 + (b - $7)^2 < 1e-14
+	  exit !near }' >>log
+result $? 'the Jacobian of accelerations is that of their differences'
 tap_end
