@@ -8,6 +8,7 @@
  * alone stays a load; what else depends on time is taken at t, 0 unless another time was asked for. */
 #define _GNU_SOURCE
 #include "capability.h"
+#include "state_mass.h"
 #include "checks.h"
 #include "linearise.h"
 #include "reads.h"
@@ -436,6 +437,24 @@ static void check_contacts(const struct building *b)
 		error(b->spec->name_at, NULL, "delayed inputs have no linear equations without delay");
 }
 
+/* By the residuals as they are written: solved for highest derivatives, forces on one coordinate would stand in all
+ * equations that the mass matrix couples. */
+static void find_rest(struct linearising *l)
+{
+	const struct form **solved = l->residual;
+	struct collector *c = &l->b->collector;
+	const int keep = (int)c->keep;
+	c->equation = true;
+	c->keep = KEEP_ALL;
+	l->residual = ARRAY(const struct form *, l->n);
+	for (int i = 0; i < l->n; i++)
+		l->residual[i] = without_loads(residual_as_written(l->b->full, l->b->owner, i));
+	find_equilibrium(l);
+	l->residual = solved;
+	c->equation = false;
+	c->keep = (unsigned)keep;
+}
+
 /* The point and what F is of; false: the states there are those of a motion that has to be run first */
 static bool find_point(struct linearising *l)
 {
@@ -454,9 +473,8 @@ static bool find_point(struct linearising *l)
 		return false;
 	}
 	if (l->rest)
-		find_equilibrium(l);
-	else
-		find_residuals(l);
+		find_rest(l);
+	find_residuals(l);
 	return true;
 }
 

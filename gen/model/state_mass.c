@@ -296,14 +296,13 @@ void check_mass_at_start(struct building *b)
 	mpq_clear(j.t);
 }
 
-const struct form *residual_as_written(const struct model *model, int row)
+const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row)
 {
-	const struct segment_equations *s = model->equations.full;
-	for (int i = 0; s && i < s->masses; i++) {
+	for (int i = 0; i < s->masses; i++) {
 		const struct written_system *written = s->mass[i].system.written;
 		for (int k = 0; k < written->rows; k++)
-			if (model->equations.owner[written->highest[k].index] == row)
+			if (owner[written->highest[k].index] == row)
 				return written->residual[k];
 	}
-	return model->equations.residual[row].form;
+	return s->residual[row].form;
 }

@@ -7,7 +7,6 @@
 
 struct building;
 struct form;
-struct model;
 struct segment_equations;
 
 /* Whether the highest derivative of a coordinate (negative: of any) stands in what is not linear in the states */
@@ -15,7 +14,7 @@ bool has_highest_within(const struct building *b, const struct form *form, int c
 /* Residuals q'' - (M^-1 f) in the place of those that M(q) couples; what is not linear in q'' is an error there */
 void solve_for_highest(struct building *b, struct segment_equations *s);
 /* The left side minus the right side of an equation, not solved for its highest derivatives */
-const struct form *residual_as_written(const struct model *model, int row);
+const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
 void check_mass_at_start(struct building *b);               /* that M is regular there */
 
 #endif

@@ -339,6 +339,12 @@ static void text_assembly(FILE *to, const struct spec *spec)
 			fprintf(to, "    %s\n", parts_text(spec, i));
 }
 
+static const struct form *written_residual(const struct model *model, int row)
+{
+	const struct equations *e = &model->equations;
+	return e->full ? residual_as_written(e->full, e->owner, row) : e->residual[row].form;
+}
+
 void text_equations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -358,7 +364,7 @@ void text_equations(FILE *to, const struct step *step)
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);
 		for (int i = 0; i < model->written->n; i++)
-			fprintf(to, "    %s\n", equation_text(model->written, residual_as_written(model, i)));
+			fprintf(to, "    %s\n", equation_text(model->written, written_residual(model, i)));
 	}
 }
 

@@ -88,4 +88,13 @@ echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cat K)" | awk '
 	  near = (a - $5)^2 + (b - $7)^2 < 1e-14
 	  exit !near }' >>log
 result $? 'the Jacobian of accelerations is that of their differences'
+# A cart that is free to move: upright and hanging, its pole by hand +-sqrt((M + m)g/(M l)), and i times that
+for start in 0.1 3; do
+	sed "s/^init th = .*/init th = $start/" "$cases/cart_and_pole.spec" >cart.spec
+	"$PLGEN" --at rest --explain cart.spec >log 2>&1 && case $start in
+		3) grep -q '0 +- 4\.6456431 i' log ;;
+		*) grep -q '^ *-4\.6456431 ' log && grep -q '^ *4\.6456431 ' log ;;
+	esac
+	result $? "the poles of a cart and pole at rest near th = $start"
+done
 tap_end
