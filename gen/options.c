@@ -191,8 +191,10 @@ static const char *data_folder(const char *name, const char *tree, const char *f
 				own ? format("%s/../%s", own, tree) : NULL, otherwise };
 	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
 		if (place[i] && access(format("%s/%s", place[i], file), R_OK) == 0) {
-			char *real = realpath(place[i], NULL);
-			return need_memory(real);
+			char *real = need_memory(realpath(place[i], NULL));
+			const char *folder = format("%s", real);
+			free(real);
+			return folder;
 		}
 	return NULL;
 }

@@ -319,7 +319,7 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
         if (status != 0) {
             return status;
         }
-        if (changes || PL_BOUNDS) {
+        if (PL_BOUNDS || changes) {
             PL(bound)(&fresh, i, h);
         }
     }
