@@ -242,12 +242,15 @@ struct traced {                     /* above 0 where it was recorded; GIVEN: a.n
 	enum traced_op op;
 	struct traced_part a, b;
 };
-/* Records what is made of numbers that have these values, here, until it pauses; others at another place. */
-void trace_from(int count, const mpq_t *here, const mpq_t *there);
+/* Records what is made of numbers that have these values, here, until it pauses; others at another place and in the
+ * spec. */
+void trace_from(int count, const mpq_t *here, const mpq_t *there, const mpq_t *spec);
 void trace_pause(void);
 bool is_traced(size_t count, mpq_srcptr x);                 /* now, and some of them is one of the record's */
 /* Its number, or that of its opposite; -1: it is none, or has another value there */
 int  traced_as(mpq_srcptr here, mpq_srcptr there);
+/* x, as the spec's values give it, times the factor: not recorded */
+void product_at_spec(mpq_ptr product, mpq_srcptr x, mpq_srcptr factor);
 const struct traced *trace_record(int *count);              /* as it is by now: what a number is made of, before it */
 struct traced_part traced_constant(long value);
 void traced_add(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);

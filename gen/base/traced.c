@@ -2,8 +2,8 @@
 /* Exact numbers that follow from some that are given: a record of the sums, products and quotients that made them, as
  * taping by overloading makes one (Griewank and Walther, Evaluating Derivatives, 2008, chapter 6). A number is known by
  * its size: where what is given was drawn at random, two that are equal are the same function of it (Schwartz, Journal
- * of the ACM 27, 1980), so copies need no mark. Each is followed at two places; what has one value at both is a
- * constant. */
+ * of the ACM 27, 1980), so copies need no mark. Each is followed at a second place, where what has the same value is a
+ * constant, and at the spec's values, by which pivots are chosen. */
 #include <gmp.h>
 
 typedef void plain_operation(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
@@ -15,8 +15,9 @@ static plain_operation *const plain[] = { mpq_add, mpq_sub, mpq_mul, mpq_div };
 
 enum operation { ADD, SUB, MUL, DIV };
 enum { BUCKETS = 1 << 16 };
+enum { THERE, SPEC, ELSEWHERE };
 struct followed {
-	mpq_t here, there;          /* above 0 here */
+	mpq_t here, *elsewhere;     /* above 0 here */
 	int next;                   /* of the same hash, + 1; 0: none */
 };
 static struct {
@@ -45,14 +46,14 @@ static int find_size(mpz_srcptr numerator, mpz_srcptr denominator)
 }
 
 /* Its values become the number's. */
-static int enter(struct traced n, mpq_t here, mpq_t there)
+static int enter(struct traced n, mpq_t here, const mpq_t *elsewhere)
 {
 	*MORE(trace.number, trace.count) = n;
 	ENLARGE(trace.value, (size_t)trace.count);
 	struct followed *value = &trace.value[trace.count - 1];
-	mpq_inits(value->here, value->there, NULL);
+	mpq_init(value->here);
 	mpq_swap(value->here, here);
-	mpq_swap(value->there, there);
+	value->elsewhere = rationals_copied(ELSEWHERE, elsewhere);
 	int *bucket = bucket_of(mpq_numref(value->here), mpq_denref(value->here));
 	value->next = *bucket;
 	return (*bucket = trace.count) - 1;
@@ -65,12 +66,15 @@ static int find(mpq_srcptr x)
 	if (found >= 0 || mpq_sgn(x) == 0)
 		return found;
 	const int inverse = find_size(mpq_denref(x), mpq_numref(x));
-	if (inverse < 0 || mpq_sgn(trace.value[inverse].there) == 0)
+	if (inverse < 0 || mpq_sgn(trace.value[inverse].elsewhere[THERE]) == 0)
 		return -1;
-	RATIONAL here = ZERO, there = ZERO;
+	RATIONAL here = ZERO;
+	RATIONALS *elsewhere = rationals(ELSEWHERE);
 	mpq_inv(here, trace.value[inverse].here);
-	mpq_inv(there, trace.value[inverse].there);
-	return enter((struct traced){ TRACED_QUOTIENT, traced_constant(1), { inverse, false, NULL } }, here, there);
+	for (int i = 0; i < ELSEWHERE; i++)
+		if (mpq_sgn(trace.value[inverse].elsewhere[i]) != 0)
+			mpq_inv(elsewhere[i], trace.value[inverse].elsewhere[i]);
+	return enter((struct traced){ TRACED_QUOTIENT, traced_constant(1), { inverse, false, NULL } }, here, elsewhere);
 }
 
 /* ---- what is done ---- */
@@ -84,34 +88,35 @@ struct traced_part traced_constant(long value)
 	return part;
 }
 
-/* `there`: its value at the other place */
-static struct traced_part part_of(mpq_srcptr x, int number, mpq_ptr there)
+/* `elsewhere`: its values there */
+static struct traced_part part_of(mpq_srcptr x, int number, mpq_t *elsewhere)
 {
 	struct traced_part part = { number, mpq_sgn(x) < 0, NULL };
 	if (number < 0) {
 		mpq_t *constant = rationals(1);
 		mpq_abs(*constant, x);
 		part.constant = *constant;
-		mpq_set(there, x);
-		return part;
 	}
-	(part.negative ? mpq_neg : mpq_set)(there, trace.value[number].there);
+	for (int i = 0; i < ELSEWHERE; i++)
+		(number >= 0 && part.negative ? mpq_neg : mpq_set)(
+			elsewhere[i], number < 0 ? x : trace.value[number].elsewhere[i]);
 	return part;
 }
 
-/* result = a op b, `there` at the other place; of its size, which no number has yet, signs of terms follow */
-static void record(enum operation op, struct traced_part a, struct traced_part b, mpq_srcptr result, mpq_ptr there)
+/* result = a op b, and elsewhere; of its size, which no number has yet, signs of terms follow */
+static void record(enum operation op, struct traced_part a, struct traced_part b, mpq_srcptr result, mpq_t *elsewhere)
 {
 	RATIONAL size = ZERO;
 	const bool negative = mpq_sgn(result) < 0, sum = op <= SUB;
 	mpq_abs(size, result);
-	if (negative)
-		mpq_neg(there, there);
-	if (mpq_equal(size, there))
+	for (int i = 0; i < ELSEWHERE && negative; i++)
+		mpq_neg(elsewhere[i], elsewhere[i]);
+	if (mpq_equal(size, elsewhere[THERE]))
 		return;
 	a.negative = sum && a.negative != negative;
 	b.negative = sum && b.negative != (negative != (op == SUB));
-	enter((struct traced){ sum ? TRACED_SUM : op == MUL ? TRACED_PRODUCT : TRACED_QUOTIENT, a, b }, size, there);
+	enter((struct traced){ sum ? TRACED_SUM : op == MUL ? TRACED_PRODUCT : TRACED_QUOTIENT, a, b }, size,
+	      elsewhere);
 }
 
 static void operate(enum operation op, mpq_ptr result, mpq_srcptr a, mpq_srcptr b)
@@ -121,14 +126,16 @@ static void operate(enum operation op, mpq_ptr result, mpq_srcptr a, mpq_srcptr 
 		plain[op](result, a, b);
 		return;
 	}
-	RATIONAL there = ZERO, other = ZERO;
-	const struct traced_part x = part_of(a, first, there), y = part_of(b, second, other);
+	RATIONALS *of = rationals(ELSEWHERE), *by = rationals(ELSEWHERE);
+	const struct traced_part x = part_of(a, first, of), y = part_of(b, second, by);
 	plain[op](result, a, b);
-	trace.records = op != DIV || mpq_sgn(other) != 0;
+	trace.records = op != DIV || mpq_sgn(by[THERE]) != 0;
 	if (mpq_sgn(result) == 0 || !trace.records || find(result) >= 0)
 		return;
-	plain[op](there, there, other);
-	record(op, x, y, result, there);
+	for (int i = 0; i < ELSEWHERE; i++)
+		if (op != DIV || mpq_sgn(by[i]) != 0)
+			plain[op](of[i], of[i], by[i]);
+	record(op, x, y, result, of);
 }
 
 void traced_add(mpq_ptr result, mpq_srcptr a, mpq_srcptr b)
@@ -153,7 +160,7 @@ void traced_div(mpq_ptr result, mpq_srcptr a, mpq_srcptr b)
 
 /* ---- the record ---- */
 
-void trace_from(int count, const mpq_t *here, const mpq_t *there)
+void trace_from(int count, const mpq_t *here, const mpq_t *there, const mpq_t *spec)
 {
 	memset(trace.bucket, 0, sizeof trace.bucket);
 	trace.count = 0;
@@ -161,10 +168,12 @@ void trace_from(int count, const mpq_t *here, const mpq_t *there)
 	trace.value = NULL;
 	trace.records = true;
 	for (int i = 0; i < count; i++) {
-		RATIONAL size = ZERO, other = ZERO;
+		RATIONAL size = ZERO;
+		RATIONALS *elsewhere = rationals(ELSEWHERE);
 		mpq_abs(size, here[i]);
-		(mpq_sgn(here[i]) < 0 ? mpq_neg : mpq_set)(other, there[i]);
-		enter((struct traced){ .op = TRACED_GIVEN, .a = { i, mpq_sgn(here[i]) < 0, NULL } }, size, other);
+		(mpq_sgn(here[i]) < 0 ? mpq_neg : mpq_set)(elsewhere[THERE], there[i]);
+		(mpq_sgn(here[i]) < 0 ? mpq_neg : mpq_set)(elsewhere[SPEC], spec[i]);
+		enter((struct traced){ .op = TRACED_GIVEN, .a = { i, mpq_sgn(here[i]) < 0, NULL } }, size, elsewhere);
 	}
 }
 
@@ -187,8 +196,15 @@ int traced_as(mpq_srcptr here, mpq_srcptr there)
 	const int number = mpq_equal(here, there) ? -1 : find(here);
 	if (number < 0)
 		return number;
-	(mpq_sgn(here) < 0 ? mpq_neg : mpq_set)(size, trace.value[number].there);
+	(mpq_sgn(here) < 0 ? mpq_neg : mpq_set)(size, trace.value[number].elsewhere[THERE]);
 	return mpq_equal(size, there) ? number : -1;
+}
+
+void product_at_spec(mpq_ptr product, mpq_srcptr x, mpq_srcptr factor)
+{
+	RATIONALS *elsewhere = rationals(ELSEWHERE);
+	part_of(x, find(x), elsewhere);
+	plain[MUL](product, elsewhere[SPEC], factor);
 }
 
 const struct traced *trace_record(int *count)

@@ -301,7 +301,7 @@ void record_of_programs(void **state)
             if (i > 12)             /* what they are made of stays small */
                 program[i].a = (int)draw(8);
         }
-        trace_from(GIVEN, given, given + GIVEN);
+        trace_from(GIVEN, given, given + GIVEN, given + GIVEN);
         for (int p = 0; p < PLACES && defined; p++) {
             made[p] = rationals(MADE);
             defined = perform(program, given + p * GIVEN, made[p]);
@@ -322,7 +322,7 @@ void record_of_matrices(void **state)
         draw_places(given);
         for (int i = 0; i < SIDE * SIDE; i++)
             fixed[i] = (int)draw(6) - 3;
-        trace_from(GIVEN, given, given + GIVEN);
+        trace_from(GIVEN, given, given + GIVEN, given + GIVEN);
         for (int p = 0; p < PLACES && regular; p++) {
             mpq_t *A = rationals(SIDE * SIDE);
             made[p] = rationals(2 * SIDE * SIDE);
@@ -346,7 +346,7 @@ void record_of_others(void **state)
     (void)state;
     mpq_t *given = rationals(PLACES * GIVEN), *other = rationals(2);
     draw_places(given);
-    trace_from(GIVEN, given, given + GIVEN);
+    trace_from(GIVEN, given, given + GIVEN, given + GIVEN);
     mpz_mul(mpq_numref(other[0]), mpq_numref(given[0]), mpq_numref(given[1]));
     mpq_mul(other[1], given[0], given[1]);
     trace_pause();

@@ -129,7 +129,7 @@ static void look(struct elsewhere *s)
 static void look_at_both(void *context)
 {
 	struct elsewhere *s = context;
-	trace_from(s->tuning->params, values_at(s, 0), values_at(s, 1));
+	trace_from(s->tuning->params, values_at(s, 0), values_at(s, 1), s->tuning->nominal);
 	look(s);
 	trace_pause();
 	look(s);
