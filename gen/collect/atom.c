@@ -82,7 +82,10 @@ static void add_dependence(const struct collector *c, struct atom *atom, const s
 		atom->velocity = atom->velocity || is_velocity(c->frame, basis);
 		atom->params = atom->params || (basis->atom && basis->atom->params);
 		atom->moves = moved_basis(atom->moves, basis);
+		atom->highest = atom->highest || (basis->atom ? basis->atom->highest : is_highest(c->frame, basis));
 	}
+	if (atom->kind == ATOM_CALL && atom->function >= FN_FRICTION)
+		atom->highest = false;
 }
 
 bool depends_on_time_only(const struct basis *basis)

@@ -14,6 +14,8 @@ struct differentiation {
 	void *context;
 	struct form **known;        /* per atom: its derivative, once found */
 	int count;
+	int systems;                /* of linear equations: right sides of the derivatives, for all components */
+	struct { const struct atom *atom; const struct form **right; } *system;
 };
 
 static struct form *derive(struct differentiation *d, const struct form *form);
@@ -164,24 +166,44 @@ static struct form *derive_reciprocal(struct differentiation *d, const struct at
 	return form_difference(form_number(0), kept_product(d->c, a->node, square, slope));
 }
 
-/* M x' = f' - M' x */
-static struct form *derive_solution(struct differentiation *d, const struct atom *a)
+/* f' - M' x */
+static const struct form **right_of_solution(struct differentiation *d, const struct atom *a)
 {
 	struct collector *c = d->c;
-	struct linear_system e = system_of(a, a->operand);
+	const struct linear_system e = system_of(a, a->operand);
 	const struct form **right = ARRAY(const struct form *, e.n);
 	struct form **x = ARRAY(struct form *, e.n);
 	for (int j = 0; j < e.n; j++)
 		x[j] = kept_solution(c, a->node, &e, j);
 	for (int i = 0; i < e.n; i++) {
 		struct form *slope = derive(d, e.f[i]);
-		for (int j = 0; j < e.n; j++)
-			slope = form_difference(slope, kept_product(c, a->node, derive(d, e.M[i * e.n + j]), x[j]));
+		for (int j = 0; j < e.n; j++) {
+			const struct form *change = derive(d, e.M[i * e.n + j]);
+			if (change->terms)
+				slope = form_difference(slope, kept_product(c, a->node, change, x[j]));
+		}
 		right[i] = slope;
 	}
-	e.f = right;
+	return right;
+}
+
+/* M x' = f' - M' x */
+static struct form *derive_solution(struct differentiation *d, const struct atom *a)
+{
+	struct linear_system e = system_of(a, a->operand);
+	int known = 0;
+	while (known < d->systems && !same_solution(d->system[known].atom, a))
+		known++;
+	if (known == d->systems) {
+		const struct form **right = right_of_solution(d, a);
+		known = d->systems++;           /* operands may have been solutions themselves */
+		ENLARGE(d->system, (size_t)d->systems);
+		d->system[known].atom = a;
+		d->system[known].right = right;
+	}
+	e.f = d->system[known].right;
 	e.written = NULL;
-	return kept_solution(c, a->node, &e, a->component);
+	return kept_solution(d->c, a->node, &e, a->component);
 }
 
 static struct form *derive_atom(struct differentiation *d, const struct atom *a)
@@ -247,13 +269,18 @@ struct form *form_partial(struct collector *c, const struct atom *atom, int oper
 	return derive_atom(&d, atom);
 }
 
-struct form *form_rate(struct collector *c, const struct form *form,
-		       struct form *(*rate)(void *context, const struct form_term *term), void *context)
+struct differentiation *rates_new(struct collector *c,
+				  struct form *(*rate)(void *context, const struct form_term *term), void *context)
 {
-	struct differentiation d = { .c = c, .rate = rate, .context = context };
-	d.count = atoms_count(c->atoms);
-	d.known = ARRAY(struct form *, d.count);
-	return derive(&d, form);
+	struct differentiation *d = NEW(struct differentiation);
+	*d = (struct differentiation){ .c = c, .rate = rate, .context = context, .count = atoms_count(c->atoms) };
+	d->known = ARRAY(struct form *, d->count);
+	return d;
+}
+
+struct form *form_rate(struct differentiation *rates, const struct form *form)
+{
+	return derive(rates, form);
 }
 
 /* ---- at a point ---- */

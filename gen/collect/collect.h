@@ -164,6 +164,8 @@ struct atom {
 	unsigned *exponent;         /* of ATOM_PRODUCT, one per factor */
 	bool time, input, state, velocity; /* what it depends on; a coordinate of first order counts as a velocity */
 	bool params;                /* it is made of tunable params */
+	/* a highest derivative stands in it that equations are solved for: none of friction, which regions solve for */
+	bool highest;
 	const struct basis *moves;  /* of that a coordinate, else an input; NULL: t alone */
 	struct verdict *judged;      /* what was found out about it */
 	const struct node *node;    /* where it comes from */
@@ -240,9 +242,11 @@ struct form **form_derivatives(struct collector *c, int count, const struct form
 			       int order);
 /* With respect to an operand of an atom, wherever it stands in it */
 struct form *form_partial(struct collector *c, const struct atom *atom, int operand);
-/* In time; `rate` gives that of a term that is no atom */
-struct form *form_rate(struct collector *c, const struct form *form,
-		       struct form *(*rate)(void *context, const struct form_term *term), void *context);
+/* In time; `rate` gives the derivative of a term that is no atom. Each atom that is there now is derived once. */
+struct differentiation;
+struct differentiation *rates_new(struct collector *c,
+				  struct form *(*rate)(void *context, const struct form_term *term), void *context);
+struct form *form_rate(struct differentiation *rates, const struct form *form);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
 void point_at_values(struct point *point);                  /* tunable params have the spec's values there */

@@ -26,17 +26,36 @@ static bool all_constant(int count, const struct form *const *x)
 	return true;
 }
 
+/* The last one is kept: all components ask for that of the same matrix. */
+static const mpq_t *inverse_of(const struct node *node, int n, const mpq_t *value)
+{
+	static struct { int n; mpq_t *value, *inverse; } last;
+	const size_t cells = (size_t)(n * n);
+	int column;
+	if (last.n == n && rationals_equal(cells, last.value, value))
+		return last.inverse;
+	RATIONALS *inverse = rationals(cells);
+	if (!rational_inverse(n, value, inverse, &column))
+		error(node->start, NULL, "the mass matrix is singular here: highest derivatives are not determined");
+	if (last.n > 0) {
+		rationals_free(last.value, (size_t)(last.n * last.n));
+		rationals_free(last.inverse, (size_t)(last.n * last.n));
+	}
+	last.n = n;
+	last.value = rationals_copied(cells, value);
+	return last.inverse = rationals_copied(cells, inverse);
+}
+
 /* Of a constant M: its inverse times f */
 static struct form *constant_solution(struct collector *c, const struct node *node, const struct linear_system *e,
 				      int component)
 {
 	struct form *x = NEW(struct form);
-	int n = e->n, column;
-	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
+	const int n = e->n;
+	RATIONALS *value = rationals((size_t)(n * n));
 	for (int i = 0; i < n * n; i++)
 		constant_value(c, e->M[i], value[i]);
-	if (!rational_inverse(n, value, inverse, &column))
-		error(node->start, NULL, "the mass matrix is singular here: highest derivatives are not determined");
+	const mpq_t *inverse = inverse_of(node, n, value);
 	for (int j = 0; j < n; j++)
 		form_add_to(x, e->f[j], inverse[component * n + j]);
 	return x;

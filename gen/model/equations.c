@@ -195,7 +195,7 @@ static bool can_own(const struct building *b, int row, int coord, enum choice ch
 	int order = given ? -1 : order_of(b->model, coord);
 	const struct form *form = b->segment_equations->residual[row].form;
 	return has_coordinate_of_order(form, coord, order) ||
-	       (order == order_of(b->model, coord) && has_highest_within(b, form, coord)) ||
+	       (order == order_of(b->model, coord) && has_highest(b, form, coord)) ||
 	       (order == 1 && has_slider(b, form, coord));
 }
 

@@ -20,6 +20,7 @@ struct sweep {
 	struct form **adjoint;      /* per atom: the derivative by it */
 	struct form **by[2];        /* per coordinate: by itself, by its velocity */
 	struct form **force;        /* per coordinate: what goes into its equation */
+	struct differentiation *rate; /* in time */
 };
 
 /* ---- time derivatives of terms ---- */
@@ -27,11 +28,6 @@ struct sweep {
 static struct form *rate_of_term(void *building, const struct form_term *term)
 {
 	return rate_of_form(building, form_single(term->basis, term->factor));
-}
-
-static struct form *rate_of(struct building *b, const struct form *form)
-{
-	return form_rate(&b->collector, form, rate_of_term, b);
 }
 
 /* ---- rates ---- */
@@ -47,23 +43,27 @@ static bool is_first_derivative(const struct sweep *s, const struct form *form)
 	return first;
 }
 
+static const struct form_term *velocity_in(const struct form *rate, int coord)
+{
+	const struct basis velocity = { .kind = BASIS_COORD, .index = coord, .order = 1 };
+	return form_find(rate, &velocity);
+}
+
 /* Does `form` depend on coordinates by this combination of them alone, whose rate is `rate`? */
 static bool is_of_combination(const struct sweep *s, const struct form *form, const struct form *rate)
 {
-	struct collector *c = &s->b->collector;
-	const int n = s->b->model->n;
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(s->b->collector.atoms));
 	const struct form *first = NULL;
 	RATIONAL ratio = ZERO;
-	for (int j = 0; j < n; j++) {
-		const struct form *slope = form_derivatives(c, 1, &form, false, j, 0)[0];
-		const struct basis velocity = { .kind = BASIS_COORD, .index = j, .order = 1 };
-		const struct form_term *own = form_find(rate, &velocity);
-		if (form_derivatives(c, 1, &form, false, j, 1)[0]->terms || (!own && slope->terms))
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct basis *basis = &(*term)->basis;
+		if (basis->kind == BASIS_COORD && (basis->order > 0 || !velocity_in(rate, basis->index)))
 			return false;
-		if (!own)
-			continue;
-		mpq_inv(ratio, own->factor);
-		slope = form_scale(slope, ratio);
+	}
+	for (int i = 0; i < rate->terms; i++) {
+		mpq_inv(ratio, rate->term[i].factor);
+		const struct form *slope = form_scale(form_derivatives(&s->b->collector, 1, &form, false,
+								       rate->term[i].basis.index, 0)[0], ratio);
 		if (first && !same_form(first, slope))
 			return false;
 		first = slope;
@@ -88,35 +88,34 @@ static int rate_within(const struct sweep *s, const struct atom *a)
 
 /* ---- backwards ---- */
 
-static void add_product(struct sweep *s, struct form **to, const struct form *a, const struct form *b,
-			const struct node *node)
+/* factor times form into a sum, which is made where there is none yet */
+static void add_to(struct form **sum, const struct form *form, mpq_srcptr factor)
 {
-	struct form *product = kept_product(&s->b->collector, node, a, b);
-	*to = *to ? form_sum(*to, product, false) : product;
+	*sum = *sum ? *sum : NEW(struct form);
+	form_add_to(*sum, form, factor);
 }
 
 /* The form is multiplied by `adjoint` in what is differentiated. */
-static void spread(struct sweep *s, const struct form *form, const struct form *adjoint, const struct node *node)
+static void spread(struct sweep *s, const struct form *form, const struct form *adjoint)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct basis *basis = &form->term[i].basis;
-		struct form **to = basis->kind == BASIS_COORD && basis->order < 2 ? &s->by[basis->order][basis->index]
-				   : basis->atom				   ? &s->adjoint[basis->atom->index]
-										   : NULL;
-		if (to)
-			add_product(s, to, adjoint, form_constant(form->term[i].factor), node);
+		if (basis->kind == BASIS_COORD && basis->order < 2)
+			add_to(&s->by[basis->order][basis->index], adjoint, form->term[i].factor);
+		else if (basis->atom)
+			add_to(&s->adjoint[basis->atom->index], adjoint, form->term[i].factor);
 	}
 }
 
 /* (dT/dw)' dr/dq of one rate */
 static void add_rate(struct sweep *s, const struct atom *a, int velocity)
 {
-	const struct form *change = rate_of(s->b, s->adjoint[a->index]);
+	const struct form *change = form_rate(s->rate, s->adjoint[a->index]);
 	const struct form *others = kept_others(&s->b->collector, a->node, a, velocity);
 	const struct form *rate = a->operand[velocity];
+	const struct form *product = kept_product(&s->b->collector, a->node, change, others);
 	for (int i = 0; i < rate->terms; i++)
-		add_product(s, &s->force[rate->term[i].basis.index], change,
-			    form_scale(others, rate->term[i].factor), a->node);
+		add_to(&s->force[rate->term[i].basis.index], product, rate->term[i].factor);
 }
 
 static bool stands_before(const struct atom *a, int operand)
@@ -139,8 +138,7 @@ static void visit(struct sweep *s, const struct atom *a)
 			continue;
 		struct form *slope = form_partial(&s->b->collector, a, i);
 		if (slope->terms)
-			spread(s, a->operand[i], kept_product(&s->b->collector, a->node, s->adjoint[a->index], slope),
-			       a->node);
+			spread(s, a->operand[i], kept_product(&s->b->collector, a->node, s->adjoint[a->index], slope));
 	}
 }
 
@@ -158,16 +156,17 @@ static void list_atoms(const struct form *form, const struct atom **atom)
 }
 
 static struct sweep sweep_back(struct building *b, const struct form *form, const struct form *seed, bool rates,
-			       struct form **force, const struct node *node)
+			       struct form **force)
 {
 	const int atoms = atoms_count(b->collector.atoms);
 	struct sweep s = { .b = b, .rates = rates, .atoms = atoms, .force = force };
 	const struct atom **atom = ARRAY(const struct atom *, (size_t)atoms + 1);
 	s.adjoint = ARRAY(struct form *, (size_t)atoms + 1);
+	s.rate = rates_new(&b->collector, rate_of_term, b);
 	for (int k = 0; k < 2; k++)
 		s.by[k] = ARRAY(struct form *, b->model->n);
 	list_atoms(form, atom);
-	spread(&s, form, seed, node);
+	spread(&s, form, seed);
 	for (int i = atoms - 1; i >= 0; i--)
 		if (atom[i] && s.adjoint[i])
 			visit(&s, atom[i]);
@@ -176,32 +175,26 @@ static struct sweep sweep_back(struct building *b, const struct form *form, cons
 
 /* ---- the energies ---- */
 
-static void add_to(struct form **force, int coord, const struct form *form, bool subtract)
+static void add_kinetic(struct building *b, const struct form *T, struct form **force)
 {
-	force[coord] = force[coord] ? form_sum(force[coord], form, subtract)
-		       : subtract   ? form_difference(NEW(struct form), form)
-				    : form_sum(form, NEW(struct form), false);
-}
-
-static void add_kinetic(struct building *b, const struct form *T, struct form **force, const struct node *node)
-{
-	struct sweep s = sweep_back(b, T, form_number(1), true, force, node);
+	RATIONAL minus = RATIO(-1, 1);
+	struct sweep s = sweep_back(b, T, form_number(1), true, force);
 	for (int j = 0; j < b->model->n; j++) {
 		if (s.by[1][j])
-			add_to(force, j, rate_of(b, s.by[1][j]), false);
+			add_to(&force[j], form_rate(s.rate, s.by[1][j]), NULL);
 		if (s.by[0][j])
-			add_to(force, j, s.by[0][j], true);
+			add_to(&force[j], s.by[0][j], minus);
 	}
 }
 
 /* The derivative by each coordinate, or by its velocity */
 static void add_gradient(struct building *b, const struct form *form, const struct form *seed, int order,
-			 struct form **force, const struct node *node)
+			 struct form **force)
 {
-	struct sweep s = sweep_back(b, form, seed, false, force, node);
+	struct sweep s = sweep_back(b, form, seed, false, force);
 	for (int j = 0; j < b->model->n; j++)
 		if (s.by[order][j])
-			add_to(force, j, s.by[order][j], false);
+			add_to(&force[j], s.by[order][j], NULL);
 }
 
 static const struct form *scalar_of(const struct value *value, const struct node *node)
@@ -231,16 +224,16 @@ static void add_energy(struct building *b, const struct energy *energy, struct f
 	for (int i = 0; i < (energy->point ? energy->point->children : 0); i++) {
 		struct node *point = energy->point->child[i], *value = energy->value->child[i];
 		const struct form *r = scalar_of(collect(c, point), point), *F = scalar_of(collect(c, value), value);
-		add_gradient(b, r, form_difference(NEW(struct form), F), 0, force, point);
+		add_gradient(b, r, form_difference(NEW(struct form), F), 0, force);
 	}
 	if (energy->point)
 		return;
 	const struct form *form = scalar_of(collect(c, energy->value), energy->value);
 	check_energy(b, energy, form);
 	if (energy->kind == 'T')
-		add_kinetic(b, form, force, energy->value);
+		add_kinetic(b, form, force);
 	else
-		add_gradient(b, form, form_number(1), energy->kind == 'D', force, energy->value);
+		add_gradient(b, form, form_number(1), energy->kind == 'D', force);
 }
 
 struct adding {

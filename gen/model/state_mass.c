@@ -22,31 +22,36 @@ static int highest_order(const struct building *b, int coord)
 	return b->model->system.velocity[coord] >= 0 ? 2 : 1;
 }
 
-/* The velocity of friction without mass is a highest derivative that regions solve for, not these equations. */
-static bool is_solved_by_regions(const struct atom *atom)
+/* The first atom in which a highest derivative stands; NULL: there is none */
+static const struct atom *atom_of_highest(const struct form *form)
 {
-	return atom->kind == ATOM_CALL && atom->function >= FN_FRICTION;
-}
-
-/* An atom in which a highest derivative stands, that of `coord`, or where that is negative any; NULL: there is none */
-static const struct atom *atom_of_highest(const struct building *b, const struct form *form, int coord)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *atom = form->term[i].basis.atom;
-		if (!atom || !atom->state || is_solved_by_regions(atom))
-			continue;
-		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-		for (const struct form_term **term = terms_within(form_unit(form->term[i].basis), seen); *term; term++)
-			if (is_highest(&b->model->frame, &(*term)->basis) &&
-			    (coord < 0 || (*term)->basis.index == coord))
-				return atom;
-	}
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.atom && form->term[i].basis.atom->highest)
+			return form->term[i].basis.atom;
 	return NULL;
 }
 
-bool has_highest_within(const struct building *b, const struct form *form, int coord)
+static bool finds_highest(const struct building *b, const struct form *form, int coord, bool *seen)
 {
-	return atom_of_highest(b, form, coord) != NULL;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		const struct atom *a = basis->atom;
+		if (!a && is_highest(&b->model->frame, basis) && basis->index == coord)
+			return true;
+		if (!a || !a->highest || seen[a->index])
+			continue;
+		seen[a->index] = true;
+		for (int k = 0; k < a->operands; k++)
+			if (finds_highest(b, a->operand[k], coord, seen))
+				return true;
+	}
+	return false;
+}
+
+bool has_highest(const struct building *b, const struct form *form, int coord)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	return finds_highest(b, form, coord, seen);
 }
 
 struct starting {
@@ -66,7 +71,7 @@ static _Noreturn void report_not_linear(const struct atom *atom)
 
 static bool holds_highest(const struct solving *w, const struct form *form)
 {
-	bool holds = atom_of_highest(w->b, form, -1) != NULL;
+	bool holds = atom_of_highest(form) != NULL;
 	for (int i = 0; i < form->terms; i++)
 		holds = holds || is_highest(&w->b->model->frame, &form->term[i].basis);
 	return holds;
@@ -77,7 +82,7 @@ static void check_linear(const struct solving *w, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
-		if (!a || !has_highest_within(w->b, form_unit(form->term[i].basis), -1))
+		if (!a || !a->highest)
 			continue;
 		int held = 0;
 		for (int k = 0; k < a->operands; k++) {
@@ -91,21 +96,16 @@ static void check_linear(const struct solving *w, const struct form *form)
 	}
 }
 
-static void find_row(struct solving *w, int row)
+/* Of all residuals at once, so that each atom is derived once */
+static void find_column(struct solving *w, int coord)
 {
-	const struct form *residual = w->s->residual[row].form;
-	const struct atom *atom = atom_of_highest(w->b, residual, -1);
-	check_linear(w, residual);
-	for (int j = 0; j < w->n; j++) {
-		struct form **entry = &w->M[row * w->n + j];
-		if (atom) {
-			*entry = form_derivatives(&w->b->collector, 1, &residual, false, j, highest_order(w->b, j))[0];
-			continue;
-		}
-		struct basis basis = { .kind = BASIS_COORD, .index = j, .order = highest_order(w->b, j) };
-		const struct form_term *term = form_find(residual, &basis);
-		*entry = term ? form_constant(term->factor) : NEW(struct form);
-	}
+	const struct form **residual = ARRAY(const struct form *, w->n);
+	for (int i = 0; i < w->n; i++)
+		residual[i] = w->s->residual[i].form;
+	struct form **slope = form_derivatives(&w->b->collector, w->n, residual, false, coord,
+					       highest_order(w->b, coord));
+	for (int i = 0; i < w->n; i++)
+		w->M[i * w->n + coord] = slope[i];
 }
 
 /* The residual where highest derivatives are 0; terms without them stay as they are written */
@@ -118,7 +118,7 @@ static struct form *remaining(const struct solving *w, int row)
 		const struct form *alone = form_unit(term->basis);
 		if (is_highest(&w->b->model->frame, &term->basis))
 			continue;
-		if (has_highest_within(w->b, alone, -1))
+		if (atom_of_highest(alone))
 			form_add_to(rest, form_at(w->rest, alone), term->factor);
 		else
 			form_add_basis(rest, term->basis, term->factor);
@@ -218,7 +218,7 @@ static void solve_block(struct solving *w, int block)
 			M[i * n + j] = w->M[row * w->n + order[j]];
 		highest[i] = (struct basis){ .kind = BASIS_COORD, .index = order[i],
 					     .order = highest_order(w->b, order[i]) };
-		atom = atom ? atom : atom_of_highest(w->b, F[i], -1);
+		atom = atom ? atom : atom_of_highest(F[i]);
 	}
 	struct written_system *written = NEW(struct written_system);
 	*written = (struct written_system){ n, highest, F };
@@ -234,7 +234,9 @@ static void solve_blocks(void *context)
 {
 	struct solving *w = context;
 	for (int i = 0; i < w->n; i++)
-		find_row(w, i);
+		check_linear(w, w->s->residual[i].form);
+	for (int j = 0; j < w->n; j++)
+		find_column(w, j);
 	find_blocks(w);
 	for (int i = 0; i < 2 * w->n; i++)
 		if (root_of_node(w->block, i) == i && !is_constant_block(w, i))
@@ -245,7 +247,7 @@ void solve_for_highest(struct building *b, struct segment_equations *s)
 {
 	bool any = false;
 	for (int i = 0; i < b->model->n; i++)
-		any = any || has_highest_within(b, s->residual[i].form, -1);
+		any = any || atom_of_highest(s->residual[i].form);
 	if (!any)
 		return;
 	struct solving w = { .b = b, .s = s, .n = b->model->n };

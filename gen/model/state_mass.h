@@ -9,8 +9,8 @@ struct building;
 struct form;
 struct segment_equations;
 
-/* Whether the highest derivative of a coordinate (negative: of any) stands in what is not linear in the states */
-bool has_highest_within(const struct building *b, const struct form *form, int coord);
+/* Whether the highest derivative of a coordinate stands in it, or inside of an atom */
+bool has_highest(const struct building *b, const struct form *form, int coord);
 /* Residuals q'' - (M^-1 f) in the place of those that M(q) couples; what is not linear in q'' is an error there */
 void solve_for_highest(struct building *b, struct segment_equations *s);
 /* The left side minus the right side of an equation, not solved for its highest derivatives */
