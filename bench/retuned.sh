@@ -4,7 +4,9 @@
 # model with the values written.
 set -e
 build=$1
+root=$PWD
 work=$(mktemp -d)
+. tests/cases.sh
 trap 'rm -rf "$work"' EXIT
 echo "piecewise-linear models with tunable params, gcc -O2:"
 for case in models/stop:0.001:m,k,ks models/stop:0.01:m,k,ks models/bilinear:0.01:m,k1,k2 models/gear1:0.01:zeta,b \
@@ -12,14 +14,15 @@ for case in models/stop:0.001:m,k,ks models/stop:0.01:m,k,ks models/bilinear:0.0
 	file=${case%%:*} tunable=${case##*:} h=${case#*:}
 	h=${h%:*}
 	name=$(basename "$file")
-	grep -v '^tunable' "$file.spec" >"$work/written.spec"
+	spec=$(cd "$work" && path_of "$file.spec")
+	grep -v '^tunable' "$spec" >"$work/written.spec"
 	if [ "$name" = gear2 ]; then        # a param in the place of each stiffness
 		sed -e 's/^matrix W .*/param w = 1, c = 0.5\nmatrix W = [w, -c; -c, w]/' "$work/written.spec" \
 			>"$work/spec"
 		mv "$work/spec" "$work/written.spec"
 		tunable=w,c,b
 	fi
-	{ cat "$work/written.spec"; echo; sed -n '/^tunable/p' "$file.spec"; } >"$work/retuned.spec"
+	{ cat "$work/written.spec"; echo; sed -n '/^tunable/p' "$spec"; } >"$work/retuned.spec"
 	[ "$tunable" ] && echo "tunable $tunable" >>"$work/retuned.spec"
 	"$build/plgen" --fast --step "$h" --prefix written -o "$work/written_pl.c" "$work/written.spec" 2>/dev/null
 	"$build/plgen" --fast --step "$h" --prefix retuned -o "$work/retuned_pl.c" "$work/retuned.spec" 2>/dev/null

@@ -4,7 +4,9 @@
 # --accuracy compensated, by valgrind's callgrind: of 30,000 steps less those of 10,000.
 set -e
 build=$1
+root=$PWD
 work=$(mktemp -d)
+. tests/cases.sh
 trap 'rm -rf "$work"' EXIT
 cat >"$work/steps.c" <<'EOT'
 #include "moving_pl.h"
@@ -28,7 +30,7 @@ instructions() {
 echo "instructions a step, gcc -O2; crossings a step; one word, two words, ratio:"
 for case in tests/contacts/lasting_gap:0.01 tests/contacts/lasting_pair:0.013 models/bilinear:0.01 models/gear1:0.01 \
 	models/gear1:0.1 models/gear2:0.1 models/gear3:0.01 models/impact_oscillator:0.01 models/stick_slip:0.01; do
-	spec=${case%:*}.spec
+	spec=$(cd "$work" && path_of "${case%:*}.spec")
 	[ -f "$spec" ] || continue
 	line=
 	for accuracy in '' '--accuracy compensated'; do

@@ -33,7 +33,8 @@ each='--header
 --step 1/100 --selftest --real float'
 
 commands() {
-	find "$tests" -name specs.cases -o -name orders.cases | while IFS= read -r file; do
+	find "$tests" -name specs.cases -o -name orders.cases -o -name linear.cases -o -name regions.cases \
+		-o -name contacts.cases | while IFS= read -r file; do
 		folder=$work/specs/$(echo "${file#"$tests/"}" | tr / _)
 		mkdir -p "$folder" && awk -v into="$folder/" -f "$tests/cases.awk" "$file" >"$folder/names"
 	done

@@ -15,6 +15,7 @@ here=$root/tests/batch
 specs=$root
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 runtime_archive "$root/runtime"
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Werror'
 
@@ -28,7 +29,7 @@ agrees() {
     chosen "$spec $* $compiler $flags" || return 0
     what="-DHAS_INPUTS=1"
     {
-        "$plgen" --batch --prefix m "$@" -o m.c "$specs/$spec" &&
+        "$plgen" --batch --prefix m "$@" -o m.c "$(root=$specs path_of "$spec")" &&
             { ! grep -q 'M_INPUTS = 0' m.h || what=-DHAS_INPUTS=0; } &&
             { ! grep -q M_BATCH_FACTORS m.h || what="$what -DTUNED"; } &&
             { ! grep -q '^#define PL_FLOAT_ONLY' m.h || what="$what -DREAL_FLOAT"; } &&

@@ -10,6 +10,7 @@ plgen=$(realpath "$1")
 root=$(realpath "$2")
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 runtime_archive "$root/runtime"
 
 # compared NAME SPEC: in double and in float
@@ -59,6 +60,6 @@ dropped 0.5 0.3 0.3
 dropped 1 0.5 0.1
 dropped 0.5 0.7 0.1 2 0.01              # where the crossing before the last of an instant blurs with the next
 for jumps in thrown counted; do
-	compared "$jumps" "$root/tests/contacts/$jumps.spec"
+	compared "$jumps" "$(path_of "tests/contacts/$jumps.spec")"
 done
 tap_end

@@ -13,6 +13,7 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../cases.sh"
 . "$root/tests/run_cc.sh"
 ! long || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
 runtime_archive "$root/runtime"
@@ -142,7 +143,7 @@ bundles() {
     done
 }
 bundles 'loads' "$root/models/sdcsf.spec" --rhs
-bundles 'loads that change and grow' "$root/tests/emitted/linear/switched.spec"
+bundles 'loads that change and grow' "$(path_of tests/emitted/linear/switched.spec)"
 bundles 'two words' "$root/models/scs.spec" --accuracy compensated --selftest
 bundles 'regions' "$root/models/quarter_car_bumps.spec"
 bundles 'crossings and loads' "$root/models/gear1.spec"
@@ -154,8 +155,8 @@ bundles 'many instances' "$root/models/quarter_car.spec" --batch
 bundles 'a remainder' "$root/models/beam4.spec" --scheme etdrk4
 bundles 'series' "$root/models/pendulum.spec"
 bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
-bundles 'friction by series' "$root/tests/contacts/rubbed.spec" --tolerance 1e-5
-bundles 'tunable regions' "$root/tests/tunable/regions/rubbing.spec"
+bundles 'friction by series' "$(path_of tests/contacts/rubbed.spec)" --tolerance 1e-5
+bundles 'tunable regions' "$(path_of tests/tunable/regions/rubbing.spec)"
 bundles 'crossings by parts' "$root/tests/series_switching/gap_cubic.spec" --scheme etdrk4
 bundles 'crossings, where it is stiff or not' "$root/tests/series_switching/stop_cubic.spec" --scheme auto
 

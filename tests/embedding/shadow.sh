@@ -16,6 +16,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../cases.sh"
 
 {
     gccs=${GCCS:-gcc g++}
@@ -83,7 +84,7 @@ shadows() {
 }
 
 shadows 'loads' 15 "$root/models/sdcsf.spec" --rhs --selftest
-shadows 'inputs, changing loads, float' 18 "$root/tests/emitted/linear/switched.spec" --real float
+shadows 'inputs, changing loads, float' 18 "$(path_of tests/emitted/linear/switched.spec)" --real float
 shadows 'regions' 20 "$root/models/quarter_car_bumps.spec"
 shadows 'tunable' 25 "$root/tests/tunable/changes.spec"
 shadows 'a remainder of ramps, with nodes' 20 "$root/tests/remainder/ramped.spec" --rhs --scheme nc3
@@ -95,7 +96,7 @@ runtime_archive "$root/runtime"
 runs() {
     main_of "$1" -std=c99 2>>log
     # shellcheck disable=SC2086
-    "$plgen" --prefix "$1" "$root/tests/emitted/linear/ramps.spec" >ran.c 2>>log &&
+    "$plgen" --prefix "$1" "$(path_of tests/emitted/linear/ramps.spec)" >ran.c 2>>log &&
         ${CC:-cc} -std=c99 -I"$root/runtime" $main ran.c "$archive" -o ran 2>>log &&
         ./ran 2 >"$1.csv" 2>>log || echo "$1" >>log
 }

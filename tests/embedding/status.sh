@@ -10,6 +10,7 @@ root=$2
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../cases.sh"
 
 runtime_archive "$root/runtime"
 
@@ -128,7 +129,7 @@ looks 'momentum kept' "$root/tests/forms/loose.spec" ''
 looks 'momentum kept, compensated' "$root/tests/forms/loose.spec" -DCOMPENSATED --accuracy compensated
 looks 'more than 16 states' "$root/tests/forms/large.spec" ''
 looks 'tunable' "$root/tests/tunable/held.spec" ''
-looks 'ramps, changing loads' "$root/tests/emitted/linear/switched.spec" ''
+looks 'ramps, changing loads' "$(path_of tests/emitted/linear/switched.spec)" ''
 
 # ---- a run ends where it shows ----
 

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The models of linear/: what plgen emits needs nothing but the runtime, and runs, with samples on standard input too;
-# names that the emitted C might use itself.
+# The models of linear.cases: what plgen emits needs nothing but the runtime, and runs, with samples on standard input
+# too; names that the emitted C might use itself.
 #
 #     linear.sh specs|names PLGEN LINEAR_INPUTS SOURCE_ROOT
 #
@@ -87,8 +87,9 @@ driver() {          # driver FILE NAME PROGRAM [LIBRARIES]: an object, or C, wit
 
 turn=0
 every_spec() {
-for spec in "$root"/tests/emitted/linear/*.spec; do
-    m=$(basename "$spec" .spec)
+mkdir specs && awk -v into=specs/ -f "$root/tests/cases.awk" "$root/tests/emitted/linear.cases" >names
+for m in $(cat names); do
+    spec=specs/$m.spec
     inputs_of=$(sed -n 's/^input //p' "$spec")
     for kind in plain rhs reduce; do
         # without outputs there is nothing to reduce

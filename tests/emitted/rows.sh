@@ -13,6 +13,7 @@ plgen=$(absolute "$1")
 root=$(absolute "$2")
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
+. "${0%/*}/../cases.sh"
 runtime_archive "$root/runtime"
 
 # Loads far above the poles, whose forced part the state is kept without; and over differences
@@ -58,12 +59,11 @@ step 0.125
 EOF
 
 : >list
-emitted=$root/tests/emitted/linear
 # NAME ROWS SPEC OPTIONS: ROWS: what the table should have; 0: none
 while read -r name rows spec options; do
     case $spec in
         models/*) file=$root/$spec ;;
-        linear/*) file=$emitted/${spec#linear/} ;;
+        linear/*) file=$(path_of "tests/emitted/$spec") ;;
         forms/*) file=$root/tests/$spec ;;
         *) file=$spec ;;
     esac

@@ -10,6 +10,7 @@ sweeps=$(cd "$(dirname "$3")" && pwd)/$(basename "$3") || exit 99
 root=$(cd "$4" && pwd) || exit 99
 here=$root/tests/look
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 
 # numbers NAME SPEC: one result for all that LOOK finds, of which it says those that are wrong
 numbers() {
@@ -412,7 +413,7 @@ if command -v gnuplot >log; then
 	cmp a.svg b.svg >>log && cmp a.png b.png >>log && [ "$good" -eq 0 ]
 	result $? 'svg, png and pdf'
 	for name in models/sdcsf models/quarter_car models/tuned_floor tests/refresh/growing; do
-		"$plgen" --report "$root/$name.spec" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
+		"$plgen" --report "$(path_of $name.spec)" >page 2>log && awk -f "$here/page.awk" page >log 2>&1 &&
 			[ "$(grep -c '^ width="900"' page)" -ge 3 ] &&
 			[ "$(grep -c '^ width="900"' page)" -eq "$(grep -c '^ width="400"' page)" ]
 		result $? "the page of $name, each picture on a broad and on a narrow sheet"

@@ -8,13 +8,7 @@ list_runs() {
 		"$root/tests/same/runs.list"
 }
 
-# path_of FOLDER/NAME.spec: of that file, or of NAME.spec here, as FOLDER/specs.cases or FOLDER.cases has it
-path_of() {
-	[ ! -e "$root/$1" ] || { echo "$root/$1"; return; }
-	for cases in "$root/${1%/*}/specs.cases" "$root/${1%/*}.cases"; do
-		[ ! -e "$cases" ] || awk -v only="$(basename "$1" .spec)" -f "$root/tests/cases.awk" "$cases"
-	done | sed 's/$/.spec/'
-}
+. "$root/tests/cases.sh"
 
 # emit PLGEN RUN: model.c and model.h of a line of list_runs, here; a PLGEN that has no --fast has its tables always
 emit() {

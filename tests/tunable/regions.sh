@@ -1,20 +1,22 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# regions.sh PLGEN SOURCE REAL SPEC...: models with regions whose matrices tunable params change, each as it is written
-# (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every third
-# compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`: values
+# regions.sh PLGEN SOURCE REAL FILE.cases: models with regions whose matrices tunable params change, each as it is
+# written (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every
+# fifth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`: values
 # that NAME_retune refuses.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 real=$3
-shift 3
+cases=$(realpath "$4")
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 sanitizing="${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize=null,alignment,object-size,pointer-overflow"
 sanitizing="$sanitizing -fno-sanitize-recover"
 turn=0
-for spec in "$@"; do
-	name=$(basename "$spec" .spec)_$real
+awk -f "$source/tests/cases.awk" "$cases" >names
+while read -r name; do
+	spec=$name.spec
+	name=${name}_$real
 	compile=$run_cc
 	turn=$((turn + 1))
 	! merging && [ $((turn % 5)) -ne 3 ] || compile=$sanitizing
@@ -54,5 +56,5 @@ for spec in "$@"; do
 	status=$?
 	grep '^not ok' log | sed 's/^/# /'
 	result $status "$name"
-done
+done <names
 tap_end
