@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # regions.sh PLGEN SOURCE REAL FILE.cases: models with regions whose matrices tunable params change, each as it is
 # written (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every
-# fifth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`: values
-# that NAME_retune refuses.
+# fifth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`:
+# values that NAME_retune refuses.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 real=$3
