@@ -78,9 +78,9 @@ static bool is_generated(const struct identifiers *c, const char *name)
 
 static const char *claim(struct identifiers *c, const char *wish)
 {
-	char *own = format("%s", wish);         /* of a part: front.body is front_body */
-	for (char *point = own; (point = strchr(point, '.'));)
-		*point = '_';
+	char *own = format("%s", wish);         /* front.body, momentum(x): front_body, momentum_x_ */
+	for (char *sign = own; (sign = strpbrk(sign, ".()[]"));)
+		*sign = '_';
 	const char *name = may_be_macro(own) ? format("v%s", own) : own;
 	while (is_generated(c, name) || is_taken(c, name) || may_be_macro(name))
 		name = is_generated(c, name) ? format("v%s", name) : format("%s_", name);

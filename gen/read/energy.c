@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Energies: statements from which equations of motion follow. Each coordinate that they name gets an element, whose
- * force is what Lagrange's equation of that coordinate says. */
+ * force is what Lagrange's equation of that coordinate says. Outputs may read their totals. */
 #include "read/parser.h"
 
 #include <string.h>
@@ -103,4 +103,120 @@ void add_energy_elements(struct spec *spec)
 		for (int i = 0; s->kind == SYMBOL_COORD && !s->broken && i < (s->length ? s->length : 1); i++)
 			if (named[s->index + i])
 				add_element(spec, s, s->length ? i + 1 : 0);
+}
+
+/* ---- totals: energy, power and momentum(q) in outputs ---- */
+
+/* factor, or factor * base, or factor * base^power; `half`: half of it */
+static struct node *product_of(struct node *factor, struct node *base, int power, bool half)
+{
+	struct node *product = node_new(NODE_PRODUCT, factor->at), *two = node_new(NODE_NUMBER, factor->at);
+	mpq_set_ui(two->number, 2, 1);
+	add_child(product, factor, false, factor->at);
+	for (int i = 0; i < power; i++)
+		add_child(product, base, false, factor->at);
+	if (half)
+		add_child(product, two, true, factor->at);
+	return product;
+}
+
+/* x - y, or x; their velocities */
+static struct node *difference(const struct element *element, int primes)
+{
+	struct node *sum = node_new(NODE_SUM, element->from->at);
+	for (int i = 0; i < (element->to ? 2 : 1); i++) {
+		struct node *state = node_new(NODE_NAME, element->from->at);
+		*state = *(i ? element->to : element->from);
+		state->primes = primes;
+		add_child(sum, state, i, element->from->at);
+	}
+	return sum;
+}
+
+/* The energy of a mass or a spring; NULL: it is another element */
+static struct node *energy_of_element(const struct element *element)
+{
+	if (element->kind != ELEMENT_MASS && element->kind != ELEMENT_SPRING)
+		return NULL;
+	return product_of(element->value, difference(element, element->kind == ELEMENT_MASS), 2, true);
+}
+
+static struct node *total_energy(const struct spec *spec, bool kinetic, struct place at)
+{
+	struct node *sum = node_new(NODE_SUM, at);
+	for (int i = 0; i < spec->energies; i++)
+		if (spec->energy[i].kind == 'T' || (spec->energy[i].kind == 'V' && !kinetic))
+			add_child(sum, spec->energy[i].value, false, at);
+	for (int i = 0; i < spec->elements; i++) {
+		const struct element *element = &spec->element[i];
+		struct node *energy = kinetic && element->kind != ELEMENT_MASS ? NULL : energy_of_element(element);
+		if (energy)
+			add_child(sum, energy, false, at);
+	}
+	return sum;
+}
+
+/* What a force at a point, a dissipation, or an energy that loads and inputs change, brings in */
+static void add_power(struct node *sum, const struct energy *energy, struct place at)
+{
+	for (int i = 0; energy->kind == 'Q' && i < energy->value->children; i++)
+		add_child(sum, product_of(energy->value->child[i], slope_of(energy->point->child[i], at), 1, false),
+			  false, at);
+	if (energy->kind == 'Q')
+		return;
+	const struct slope by = { at, energy->kind == 'D' ? SLOPE_VELOCITIES : SLOPE_LOADS, NULL };
+	struct node *power = slope_by(energy->value, by);
+	const bool none = power->kind == NODE_NUMBER && mpq_sgn(power->number) == 0;
+	if (energy->kind == 'T' && !none)
+		error(at, "output NAME = ... writes it",
+		      "the kinetic energy depends on time: the power of what moves it is not known");
+	if (!none)
+		add_child(sum, power, energy->kind == 'D', at);
+}
+
+static struct node *total_power(const struct spec *spec, struct place at)
+{
+	struct node *sum = node_new(NODE_SUM, at), *zero = node_new(NODE_NUMBER, at);
+	add_child(sum, zero, false, at);
+	for (int i = 0; i < spec->energies; i++)
+		add_power(sum, &spec->energy[i], at);
+	for (int i = 0; i < spec->elements; i++) {
+		const struct element *e = &spec->element[i];
+		struct node *energy = energy_of_element(e), *slide = difference(e, 1);
+		const struct energy of = { .kind = e->kind == ELEMENT_MASS ? 'T' : 'V', .value = energy };
+		if (energy)
+			add_power(sum, &of, at);
+		else if (e->kind != ELEMENT_ENERGY)
+			add_child(sum, product_of(e->value, slide, e->kind == ELEMENT_DAMPER ? 2 : 1, false),
+				  e->kind != ELEMENT_FORCE, at);
+	}
+	return sum;
+}
+
+struct filling { struct spec *spec; const struct total *total; };
+
+static void fill_total(void *context)
+{
+	const struct filling *f = context;
+	const struct spec *spec = f->spec;
+	const struct total *total = f->total;
+	const struct place at = total->let->at;
+	if (spec->equations > 0)
+		error(at, format("output NAME = ... writes it; the first of them: %s",
+				 text_between(spec->equation[0].at, spec->equation[0].end)),
+		      "the %s of written equations is not known", total->let->name);
+	if (spec->energies + spec->elements == 0)
+		error(at, NULL, "there are no energies, masses and springs of which this is the %s", total->let->name);
+	struct node *value = total->kind == TOTAL_POWER ? total_power(spec, at)
+							: total_energy(spec, total->kind == TOTAL_MOMENTUM, at);
+	if (total->kind == TOTAL_MOMENTUM)
+		value = slope_by(value, (struct slope){ at, SLOPE_VELOCITY, total->coord });
+	total->let->value = value;
+}
+
+void fill_totals(struct spec *spec)
+{
+	for (int i = 0; i < spec->totals; i++)
+		if (!statement_guard(fill_total, &(struct filling){ spec, &spec->total[i] }))
+			spec->total[i].let->broken = true;
 }

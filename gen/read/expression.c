@@ -155,11 +155,58 @@ static struct node *read_derivative(const struct parser *p, const struct symbol 
 	return inlined(derivative, token.at, p->end);
 }
 
+/* ---- energy, power and momentum(q) in outputs: lets, whose values fill_totals() gives ---- */
+
+static struct symbol *total_symbol(struct parser *p, int kind, struct token name, struct node *coord)
+{
+	struct spec *spec = p->spec;
+	const struct symbol *of = coord ? coord->symbol : NULL;
+	const char *component = coord && coord->component ? format("[%d]", coord->component) : "";
+	struct symbol *let = NEW(struct symbol);
+	*let = (struct symbol){ .kind = SYMBOL_LET, .at = name.at, .statement = p->statement,
+				.name = of ? format("momentum(%s%s)", of->name, component) : name.name,
+				.index = spec->count.lets++, .number = ++spec->count.symbols };
+	*spec->last = let;                      /* no other statement finds it by its name */
+	spec->last = &let->next;
+	*MORE(spec->total, spec->totals) = (struct total){ kind, let, coord };
+	return let;
+}
+
+static struct symbol *read_total(struct parser *p, struct token name)
+{
+	static const char *const known[] = { "energy", "power", "momentum" };
+	int kind = 0;
+	struct node *coord = NULL;
+	while (kind <= TOTAL_MOMENTUM && strcmp(name.name, known[kind]) != 0)
+		kind++;
+	if (!p->output || kind > TOTAL_MOMENTUM || name.primes || is_op(p, "(") != (kind == TOTAL_MOMENTUM))
+		return NULL;
+	if (p->part)
+		error(name.at, "the assembly has such outputs", "the %s is that of all components together", name.name);
+	if (kind == TOTAL_MOMENTUM) {
+		take(p);
+		coord = read_coordinate(p, false);
+		expect_op(p, ")", "')'");
+	}
+	return total_symbol(p, kind, name, coord);
+}
+
+/* An output that is nothing but one of them */
+static bool is_total(const struct symbol *symbol)
+{
+	const struct node *node = symbol->kind == SYMBOL_OUTPUT ? symbol->value : NULL;
+	while (node && node->kind == NODE_PRODUCT)      /* in another unit */
+		node = node->child[0];
+	return node && node->kind == NODE_NAME && node->symbol->kind == SYMBOL_LET && !node->symbol->value;
+}
+
 /* name: NAME { ' } | NAME [ NUMBER ] { ' } */
 struct node *resolve_name(struct parser *p, struct token token)
 {
 	int component = read_component(p, &token.primes, false);
 	struct symbol *symbol = find_symbol(p, token.name);
+	if (component == 0 && (!symbol || is_total(symbol)))
+		symbol = read_total(p, token);
 	if (!symbol)
 		unknown_name(p, token);
 	if (symbol->broken)
@@ -173,7 +220,7 @@ struct node *resolve_name(struct parser *p, struct token token)
 	if (symbol->kind == SYMBOL_OUTPUT)
 		error(token.at, "a shorthand for use in expressions is a let",
 		      "output '%s' cannot be used in an expression", token.name);
-	if (token.primes > 0 && symbol->kind == SYMBOL_LET && component == 0)
+	if (token.primes > 0 && symbol->kind == SYMBOL_LET && symbol->value && component == 0)
 		return read_derivative(p, symbol, token);
 	if (token.primes > 0 && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_INPUT)
 		error(token.at, "only coordinates have derivatives", "%s '%s' has no derivative", symbol_kind(symbol),

@@ -20,6 +20,7 @@ struct parser {
 	bool (*goes_on)(const struct parser *p);
 	int nesting;
 	bool no_acceleration;       /* in what a component is given */
+	bool output;                /* of an output statement: there energy, power and momentum(q) are known */
 };
 
 struct binding {                    /* of `with NAME = value` */
@@ -144,8 +145,15 @@ bool is_unfinished(const struct parser *p);                 /* at the end of a l
 
 /* ---- slope.c ---- */
 
-/* The derivative of an expression in time; an error at `at` where it has none that is known */
-struct node *slope_of(struct node *node, struct place at);
+struct slope {                      /* a derivative; an error at `at` where it has none that is known */
+	struct place at;
+	/* in time; in time with the coordinates fixed; by the velocity of the coordinate `of`; by all velocities, each
+	 * times it */
+	enum { SLOPE_TIME, SLOPE_LOADS, SLOPE_VELOCITY, SLOPE_VELOCITIES } kind;
+	const struct node *of;
+};
+struct node *slope_by(struct node *node, struct slope by);
+struct node *slope_of(struct node *node, struct place at);  /* in time */
 
 /* ---- unobservable.c ---- */
 

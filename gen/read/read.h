@@ -168,6 +168,11 @@ struct energy {                     /* or the force at a point */
 	struct place at, end;
 	struct node *value, *point;
 };
+struct total {                      /* of a mechanism, or of network elements */
+	enum { TOTAL_ENERGY, TOTAL_POWER, TOTAL_MOMENTUM } kind;
+	struct symbol *let;
+	struct node *coord;         /* of TOTAL_MOMENTUM */
+};
 struct state_jump {                 /* of `when`: state = value just behind it */
 	struct node *target, *value;
 };
@@ -292,6 +297,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct element *element;
 	int energies;
 	struct energy *energy;
+	int totals;
+	struct total *total;
 	int whens;                      /* in the order in which they act at one instant */
 	struct when *when;
 	struct { int files; const char **file; } data;  /* for the dependency file */
@@ -321,6 +328,7 @@ char *text_between(struct place start, struct place end);   /* without comments,
 /* ---- energy.c: equations from energies ---- */
 
 void add_energy_elements(struct spec *spec);                /* one for each coordinate that they name, at the end */
+void fill_totals(struct spec *spec);                        /* what outputs read of energy, power and momentum */
 bool has_kinetic_energy(const struct spec *spec, int component); /* then the coordinate is of second order */
 /* ---- params.c: other values of params than the spec's ---- */
 

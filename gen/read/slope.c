@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The derivative in time of an expression: of a let, f' and f'', and of what an assembly gives to an input of a
- * component which reads the input's slope. Its nodes stand at those of the expression. */
+/* The derivative of an expression: in time, of a let, f' and f'', and of what an assembly gives to an input of a
+ * component which reads the input's slope; by velocities, of energies. Its nodes stand at those of the expression. */
 #include "read/parser.h"
 
 static struct node *like(const struct node *node, enum node_kind kind)
@@ -66,18 +66,44 @@ static struct node *quotient(struct node *above, struct node *below)
 	return made;
 }
 
-static struct node *slope_of_name(struct node *node, struct place at)
+static struct node *derivative(struct node *node, const struct slope *by);
+
+/* q' of all velocities, or 1 of one of them: of a vector in its place */
+static struct node *slope_by_velocity(struct node *node, const struct slope *by)
+{
+	const struct symbol *symbol = node->symbol;
+	const bool whole = symbol->length && !node->component;
+	if (symbol->kind != SYMBOL_COORD || node->primes != 1)
+		return number(node, 0);
+	if (by->kind == SLOPE_VELOCITIES)
+		return node;
+	if (symbol != by->of->symbol || (!whole && node->component != by->of->component))
+		return number(node, 0);
+	if (!whole)
+		return number(node, 1);
+	struct node *unit = like(node, NODE_MATRIX);
+	unit->columns = 1;
+	for (int i = 1; i <= symbol->length; i++)
+		append(unit, number(node, i == by->of->component), false);
+	return unit;
+}
+
+static struct node *slope_of_name(struct node *node, const struct slope *by)
 {
 	const struct symbol *symbol = node->symbol;
 	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
 		return number(node, 0);
 	if (symbol->kind == SYMBOL_LET)
-		return slope_of(symbol->value, at);
+		return derivative(symbol->value, by);
+	if (by->kind == SLOPE_VELOCITY || by->kind == SLOPE_VELOCITIES)
+		return slope_by_velocity(node, by);
+	if (by->kind == SLOPE_LOADS && symbol->kind == SYMBOL_COORD)
+		return number(node, 0);
 	if (node->primes > (symbol->kind == SYMBOL_COORD))
-		error(at, NULL, "this derivative would hold that of %s, which is not known",
+		error(by->at, NULL, "this derivative would hold that of %s, which is not known",
 		      format("%s%.*s", symbol->name, node->primes, "''"));
 	if (symbol->kind == SYMBOL_INPUT && !symbol->hold)
-		error(at, "an input with 'hold first' ramps between samples and has one",
+		error(by->at, "an input with 'hold first' ramps between samples and has one",
 		      "this derivative would hold that of input '%s', which is held over a step: it has none",
 		      symbol->name);
 	struct node *made = like(node, NODE_NAME);
@@ -87,11 +113,11 @@ static struct node *slope_of_name(struct node *node, struct place at)
 	return made;
 }
 
-static struct node *slope_of_sum(const struct node *node, struct place at)
+static struct node *slope_of_sum(const struct node *node, const struct slope *by)
 {
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < node->children; i++) {
-		struct node *slope = slope_of(node->child[i], at);
+		struct node *slope = derivative(node->child[i], by);
 		if (!is_zero(slope))
 			append(sum, slope, node->inverse[i]);
 	}
@@ -99,14 +125,15 @@ static struct node *slope_of_sum(const struct node *node, struct place at)
 }
 
 /* a b / c: a' b / c + a b' / c - a b / c * c' / c */
-static struct node *slope_of_product(struct node *node, struct place at)
+static struct node *slope_of_product(struct node *node, const struct slope *by)
 {
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < node->children; i++) {
-		struct node *slope = slope_of(node->child[i], at);
+		struct node *slope = derivative(node->child[i], by);
 		if (is_zero(slope))
 			continue;
 		struct node *product = like(node, NODE_PRODUCT);
+		product->each = node->each;
 		for (int k = 0; k < node->children; k++)
 			append(product, k == i && !node->inverse[i] ? slope : node->child[k], node->inverse[k]);
 		append(sum, node->inverse[i] ? times(quotient(product, node->child[i]), slope) : product,
@@ -116,11 +143,11 @@ static struct node *slope_of_product(struct node *node, struct place at)
 }
 
 /* b^n: n b^(n - 1) b' */
-static struct node *slope_of_power(struct node *node, struct place at)
+static struct node *slope_of_power(struct node *node, const struct slope *by)
 {
-	struct node *base = slope_of(node->child[0], at), *exponent = node->child[1];
-	if (!is_zero(slope_of(exponent, at)))
-		error(at, NULL, "this derivative is not found: an exponent depends on time");
+	struct node *base = derivative(node->child[0], by), *exponent = node->child[1];
+	if (!is_zero(derivative(exponent, by)))
+		error(by->at, NULL, "this derivative is not found: an exponent depends on time");
 	if (is_zero(base))
 		return base;
 	struct node *less = like(exponent, NODE_SUM), *power = like(node, NODE_POWER);
@@ -132,11 +159,11 @@ static struct node *slope_of_power(struct node *node, struct place at)
 }
 
 /* (a . b)' = a' . b + a . b' */
-static struct node *slope_of_dot(struct node *node, struct place at)
+static struct node *slope_of_dot(struct node *node, const struct slope *by)
 {
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < 2; i++) {
-		struct node *slope = slope_of(node->child[i], at);
+		struct node *slope = derivative(node->child[i], by);
 		if (is_zero(slope))
 			continue;
 		struct node *product = call(node, FN_DOT, i ? node->child[0] : slope);
@@ -146,18 +173,18 @@ static struct node *slope_of_dot(struct node *node, struct place at)
 	return sum;
 }
 
-static struct node *slope_of_call(struct node *node, struct place at)
+static struct node *slope_of_call(struct node *node, const struct slope *by)
 {
-	struct node *x = node->child[0], *inner = slope_of(x, at);
+	struct node *x = node->child[0], *inner = derivative(x, by);
 	bool constant = true;
 	for (int i = 0; i < node->children; i++)
-		constant = constant && is_zero(slope_of(node->child[i], at));
+		constant = constant && is_zero(derivative(node->child[i], by));
 	if (constant)
 		return number(node, 0);
 	switch (node->function) {
 	case FN_SUM:
 	case FN_CUMSUM: return call(node, node->function, inner);
-	case FN_DOT:  return slope_of_dot(node, at);
+	case FN_DOT:  return slope_of_dot(node, by);
 	case FN_SIN:  return times(call(node, FN_COS, x), inner);
 	case FN_COS:  return negative(times(call(node, FN_SIN, x), inner));
 	case FN_SINH: return times(call(node, FN_COSH, x), inner);
@@ -167,30 +194,53 @@ static struct node *slope_of_call(struct node *node, struct place at)
 	case FN_SQRT: return quotient(inner, times(number(node, 2), node));
 	case FN_ABS:  return times(call(node, FN_SGN, x), inner);
 	default:
-		error(at, "found are those of sums, products, powers, sin, cos, exp, log, sqrt, sinh, cosh, abs",
+		error(by->at, "found are those of sums, products, powers, sin, cos, exp, log, sqrt, sinh, cosh, abs",
 		      "this derivative would hold that of %s, which is not found", function_name(node->function));
 	}
 }
 
-struct node *slope_of(struct node *node, struct place at)
+static struct node *slope_of_matrix(const struct node *node, const struct slope *by)
+{
+	struct node *matrix = like(node, NODE_MATRIX);
+	bool constant = true;
+	matrix->columns = node->columns;
+	for (int i = 0; i < node->children; i++) {
+		append(matrix, derivative(node->child[i], by), false);
+		constant = constant && is_zero(matrix->child[i]);
+	}
+	return constant ? number(node, 0) : matrix;
+}
+
+static struct node *derivative(struct node *node, const struct slope *by)
 {
 	struct node *choice;
 	switch (node->kind) {
 	case NODE_NUMBER:
 	case NODE_PI:      return number(node, 0);
-	case NODE_TIME:    return number(node, 1);
-	case NODE_NAME:    return slope_of_name(node, at);
-	case NODE_SUM:     return slope_of_sum(node, at);
-	case NODE_PRODUCT: return slope_of_product(node, at);
-	case NODE_POWER:   return slope_of_power(node, at);
-	case NODE_CALL:    return slope_of_call(node, at);
+	case NODE_TIME:    return number(node, by->kind == SLOPE_TIME || by->kind == SLOPE_LOADS);
+	case NODE_NAME:    return slope_of_name(node, by);
+	case NODE_SUM:     return slope_of_sum(node, by);
+	case NODE_PRODUCT: return slope_of_product(node, by);
+	case NODE_POWER:   return slope_of_power(node, by);
+	case NODE_CALL:    return slope_of_call(node, by);
+	case NODE_MATRIX:  return slope_of_matrix(node, by);
 	case NODE_CHOOSE:
 		choice = like(node, NODE_CHOOSE);
 		append(choice, node->child[0], false);
-		append(choice, slope_of(node->child[1], at), false);
-		append(choice, slope_of(node->child[2], at), false);
+		append(choice, derivative(node->child[1], by), false);
+		append(choice, derivative(node->child[2], by), false);
 		return choice;
 	default:
-		error(at, NULL, "this derivative is not found");
+		error(by->at, NULL, "this derivative is not found");
 	}
+}
+
+struct node *slope_by(struct node *node, struct slope by)
+{
+	return derivative(node, &by);
+}
+
+struct node *slope_of(struct node *node, struct place at)
+{
+	return slope_by(node, (struct slope){ .at = at });
 }

@@ -325,7 +325,9 @@ static void read_plain_output(struct parser *p, struct token name)
 	struct node *value = strcmp(name.name, "t") == 0 ? node_new(NODE_TIME, name.at)
 			     : peak                      ? inlined(known->value, name.at, p->end)
 							 : resolve_name(p, name);
-	const char *shown = value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
+	const bool total = !known && value->symbol && value->symbol->kind == SYMBOL_LET;
+	const char *shown = total ? value->symbol->name
+			    : value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
 					     : format("%s%.*s", name.name, value->primes, "''");
 	value->end = p->end;
 	const struct unit *written = take_unit(p, NULL),
@@ -374,6 +376,7 @@ static _Noreturn void unnamed_output(const struct parser *p)
 /* output: output ( NAME = expression | NAME = peak ( expression ) | name ) [ unit ] { , ... } */
 void read_output(struct parser *p)
 {
+	p->output = true;
 	do {
 		if (p->token.kind != TOKEN_NAME)
 			unnamed_output(p);

@@ -290,8 +290,9 @@ struct spec *parse_spec(const struct source *source)
 {
 	open_assembly(source);
 	struct spec *spec = parse_whole(source, &reader);
-	if (spec->assembly.parts && !spec->energies && !diagnostics_errors())
+	if (spec->assembly.parts && !spec->energies && !spec->totals && !diagnostics_errors())
 		leave_unobservable(spec);       /* energies tie together what stands in them */
+	fill_totals(spec);
 	add_energy_elements(spec);
 	return spec;
 }

@@ -88,6 +88,24 @@ echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cat K)" | awk '
 	  near = (a - $5)^2 + (b - $7)^2 < 1e-14
 	  exit !near }' >>log
 result $? 'the Jacobian of accelerations is that of their differences'
+# The energy changes by the power: of a moving support, a force, a damper, of network elements too
+cat >power.spec <<'SPEC'
+model power
+coord x, th
+let X = x + sin(th), Y = -cos(th)
+energy T = 1/2*(X'^2 + Y'^2), V = 9.81*Y + 20*(x - 0.1*sin(3*t))^2
+mass 3 at x
+damper 0.5 between x, th
+force cos(5*t) on x
+output energy, power
+tolerance 1e-13
+step 0.001
+SPEC
+"$plrun" power.spec 2 2>log | awk -F , 'NR > 1 { E[NR] = $2; P[NR] = $3 }
+	END { for (k = 3; k < NR; k++) { d = (E[k + 1] - E[k - 1])/0.002 - P[k]; worst = d*d > worst*worst ? d : worst }
+	      print "the power is off the differences of the energy by " worst
+	      exit !(NR > 2000 && worst*worst < 1e-8) }' >>log
+result $? 'the power is the slope of the energy'
 # A cart that is free to move: upright and hanging, its pole by hand +-sqrt((M + m)g/(M l)), and i times that
 for start in 0.1 3; do
 	sed "s/^init th = .*/init th = $start/" "$cases/cart_and_pole.spec" >cart.spec
