@@ -49,6 +49,15 @@ swept() {
 }
 swept gear "$root/models/gear1.spec" 0.05:0.25:20 1 3 1e-6
 swept two "$here/stops.spec" 0.28:0.95:16 0.2 1 1e-6
+# A damper of two rates: at 0.4985 Hz, next to the undamped frequency, 0.09224 and no resonance, whatever the amplitude
+printf '%s\n' 'model rates' 'coord x' 'input u hold first' "x'' + (x' > 0 ? 2 : 5)*x' + 9.81*x = u" \
+	"output x, v = x'" 'step 0.001' >rates.spec
+swept rates rates.spec 0.4985:1.5:10 1 0 1e-6
+"$plgen" --response 0.4985:1.5:10 --amplitude 300 rates.spec 2>>log | awk -F, 'NR == FNR { one[FNR] = $2; next }
+	FNR == 2 { print $2; first = $2 - 0.0922408 }
+	FNR > 1 && $2 / one[FNR] - 1 < 1e-9 && one[FNR] / $2 - 1 < 1e-9 { same++ }
+	END { exit !(same == 10 && first < 1e-6 && first > -1e-6) }' csv - >log
+result $? 'two rates: forces in proportion to the motion, whatever the amplitude'
 
 "$plgen" --response 1:2:3 --amplitude 0.2 "$here/stops.spec" 2>log | head -n 1 | tr ',' '\n' >head.csv
 for output in x apart mixed; do

@@ -51,6 +51,21 @@ static void two_gap(const double *y, double t, const struct motion *m, double *g
     gap[1] = y[2] - drive(m, t) - 0.1;
 }
 
+/* A damper of 2 where x rises, of 5 where it falls */
+static void rates_slope(const struct motion *m, unsigned on, double t, const double *y, double *slope)
+{
+    slope[0] = y[1];
+    slope[1] = drive(m, t) - (on & 1 ? 2 : 5) * y[1] - 9.81 * y[0];
+}
+
+static void rates_gap(const double *y, double t, const struct motion *m, double *gap)
+{
+    (void)t;
+    (void)m;
+    gap[0] = y[1];
+    gap[1] = -1;
+}
+
 static double gear_output(int k, const double *y, double t, const struct motion *m)
 {
     (void)t;
@@ -73,6 +88,7 @@ static const struct truth {
 } truths[] = {
     { "gear", 2, 2, gear_slope, gear_gap, gear_output, 1.1 },
     { "two", 4, 3, two_slope, two_gap, two_output, 0 },
+    { "rates", 2, 2, rates_slope, rates_gap, gear_output, 0 },
 };
 static const struct truth *truth;
 
