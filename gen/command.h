@@ -5,6 +5,7 @@
 
 #include "emit/printed.h"
 #include "fmu/fmu.h"
+#include "host/picture.h"
 
 /* ---- main.c: the pipeline ---- */
 
@@ -23,6 +24,7 @@ struct options {
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
 	bool campbell;                  /* the picture of --plot, with: */
 	const char *sweep, *orders, *whirl; /* NULL: not given */
+	struct picture_look look;       /* of pictures and of a page */
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
@@ -37,6 +39,12 @@ struct options {
 	const char *banner;             /* what of them belongs in a banner */
 };
 void read_options(int argc, char **argv, struct options *options); /* ends the program where they are wrong */
+
+/* ---- together.c: which of them go together ---- */
+
+_Noreturn void wrong_usage(const char *message);
+bool ends_in(const char *text, const char *end);            /* and is longer */
+void find_together(struct options *options);                /* and the name of the header */
 
 /* ---- choose.c: the cheapest step that is as exact as needed ---- */
 

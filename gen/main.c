@@ -325,9 +325,10 @@ static void print_main_text(void *context)
 	case PRINT_SOLUTION: print_closed_form(to, w); break;
 	case PRINT_RESPONSE: print_response(to, w->step, options->value, options->amplitude); break;
 	case PRINT_PLOT:
-		print_picture(to, w->step, options->value, options->amplitude, picture_of_file(options->output));
+		print_picture(to, w->step, options->value, options->amplitude, &options->look,
+			      picture_of_file(options->output));
 		break;
-	case PRINT_REPORT:   print_page(to, w->step, options->banner); break;
+	case PRINT_REPORT:   print_page(to, w->step, options->banner, &options->look); break;
 	}
 }
 
@@ -512,7 +513,7 @@ static void find_and_print_campbell(void *context)
 	struct campbell c = { .build = model_with, .context = &many };
 	find_campbell(&c, o->sweep, o->orders, o->whirl);
 	w->spec = many.now.given ? (struct spec *)many.now.given : many.now.spec;
-	print_campbell(w->text->to, &c, picture_of_file(o->output));
+	print_campbell(w->text->to, &c, &o->look, picture_of_file(o->output));
 }
 
 static bool draw_campbell(struct work *w)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The command line: options as a table, from which usage is written, and what goes together. */
+/* The command line: options as a table, from which usage is written, and their values. */
 #define _GNU_SOURCE     /* getopt_long */
 #include "command.h"
 #include "report/report.h"
@@ -10,34 +10,11 @@
 #include <string.h>
 #include <unistd.h>
 
-static _Noreturn void wrong_usage(const char *message)
-{
-	fprintf(stderr, "plgen: error: %s\nnote: plgen --help lists the options\n", message);
-	exit(2);
-}
-
-static bool ends_in(const char *text, const char *end)
-{
-	size_t length = strlen(text), tail = strlen(end);
-	return length > tail && strcmp(text + length - tail, end) == 0;
-}
-
 /* ---- what each option sets ---- */
 
 static void note_in_banner(struct options *options, const char *option)
 {
 	options->banner = format("%s%s%s", options->banner, *options->banner ? " " : "", option);
-}
-
-/* The option that asks for another text than C */
-static const char *option_of_print(enum print print)
-{
-	static const char *const option[] = {
-		[PRINT_HEADER] = "--header", [PRINT_EXPLAIN] = "--explain", [PRINT_JSON] = "--explain",
-		[PRINT_PROGRAM] = "--explain", [PRINT_SOLUTION] = "--solution", [PRINT_RESPONSE] = "--response",
-		[PRINT_PLOT] = "--plot", [PRINT_REPORT] = "--report"
-	};
-	return option[print];
 }
 
 static void set_print(struct options *options, enum print print)
@@ -80,6 +57,12 @@ static void take_plot(struct options *options, const char *value)
 		wrong_usage(format("--plot takes %s, found '%s'", PICTURE_KINDS, wrong));
 	set_print(options, PRINT_PLOT);
 	options->value = value;
+}
+
+static void take_size(struct options *options, const char *value)
+{
+	if (!picture_size(&options->look, value))
+		wrong_usage(format("--size takes WIDTHxHEIGHT, each from 20 to 10000, found '%s'", value));
 }
 
 static void take_real(struct options *options, const char *value)
@@ -260,6 +243,10 @@ static const struct row {
 	  .text = AT(orders) },
 	{ "whirl", "x:y,...", "of --plot campbell: pairs of coordinates, forward from the first to the second",
 	  .text = AT(whirl) },
+	{ "title", "TEXT", "of a picture, or of the page of --report", .text = AT(look.title) },
+	{ "size", "WxH", "of a picture: pixels, with --paper millimetres", .take = take_size },
+	{ "dark", NULL, "pictures and page light on dark", .flag = AT(look.dark) },
+	{ "paper", NULL, "a picture for print: a column of 85 mm; .pdf has its fonts inside", .flag = AT(look.paper) },
 	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .print = PRINT_REPORT },
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", .flag = AT(rhs) },
 	{ "step", "EXPR", "instead of the spec's step", .text = AT(request.step) },
@@ -475,113 +462,12 @@ static void note_all(struct options *options)
 	note_flag(options, "--bundle", options->bundle);
 }
 
-static void find_header(struct options *options)
-{
-	size_t length = options->output ? strlen(options->output) : 0;
-	const enum picture_format as = picture_of_file(options->output);
-	if (options->print == PRINT_PLOT && (as == PICTURE_NONE || (as > PICTURE_PDF && !options->campbell)))
-		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf%s, found '%s'",
-				   options->campbell ? ", of campbell also FILE.csv and FILE.json" : "",
-				   options->output));
-	if (!options->output || options->print != PRINT_C)
-		return;
-	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)
-		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
-	options->header = format("%.*s.h", (int)length - 2, options->output);
-}
-
-static void check_a2l(const struct options *options)
-{
-	if (options->a2l && (options->print != PRINT_C || options->fmu))
-		wrong_usage(format("--a2l goes with C: it does not go with %s",
-				   options->fmu ? "--fmu" : option_of_print(options->print)));
-	if (options->a2l && !ends_in(options->a2l, ".a2l"))
-		wrong_usage(format("--a2l takes the name of a file, FILE.a2l, found '%s'", options->a2l));
-}
-
-static void check_campbell(const struct options *options)
-{
-	const struct { const char *value, *option; } of[] = {
-		{ options->sweep, "--sweep" }, { options->orders, "--orders" }, { options->whirl, "--whirl" }
-	};
-	for (size_t i = 0; i < sizeof of / sizeof *of; i++)
-		if (of[i].value && !options->campbell)
-			wrong_usage(format("%s goes with --plot campbell", of[i].option));
-	if (options->campbell && !options->sweep)
-		wrong_usage("--plot campbell takes the param and its values from --sweep w=0:500");
-}
-
-/* Of an FMU everything else that is printed, and what nothing in it would call */
-static void check_fmu(const struct options *options)
-{
-	const size_t length = options->fmu ? strlen(options->fmu) : 0;
-	const struct { bool requested; const char *option; } against[] = {
-		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
-		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
-		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
-	};
-	if (!options->fmu && (options->fmu_version || options->fmu_binary))
-		wrong_usage(format("%s goes with --fmu FILE.fmu",
-				   options->fmu_version ? "--fmu-version" : "--fmu-binary"));
-	if (!options->fmu)
-		return;
-	if (length < 5 || strcmp(options->fmu + length - 4, ".fmu") != 0)
-		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu));
-	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
-		if (against[i].requested)
-			wrong_usage(format("%s does not go with --fmu", against[i].option));
-}
-
-static bool has_control(const char *text)
-{
-	for (; *text; text++)
-		if ((unsigned char)*text < ' ' || *text == 127)
-			return true;
-	return false;
-}
-
-/* The C includes the header by its name, and in a rule of make the paths stand too. */
-static void check_spelling(const struct options *options, const char *const *path, int paths)
-{
-	const char *slash = options->header ? strrchr(options->header, '/') : NULL;
-	const char *name = slash ? slash + 1 : options->header ? options->header : "";
-	if (has_control(name) || strpbrk(name, "\"\\"))
-		wrong_usage("-o: an #include cannot name this file: a quote, a backslash or a control character is in "
-			    "its name");
-	for (int i = 0; i < paths; i++)
-		if (options->depfile && path[i] && has_control(path[i]))
-			wrong_usage("--depfile: a rule of make cannot name a file with a control character in its "
-				    "path");
-}
-
-static void check_names(const struct options *options)
-{
-	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
-			       options->a2l, options->params };
-	enum { PATHS = sizeof path / sizeof *path };
-	check_spelling(options, path, PATHS);
-	for (int i = 0; i < PATHS; i++)
-		for (int j = i + 1; j < PATHS; j++)
-			if (path[i] && path[j] && same_file(path[i], path[j]))
-				wrong_usage(format("'%s' would be written over: each file needs a name of its own",
-						   path[i]));
-}
-
 void read_options(int argc, char **argv, struct options *options)
 {
 	options->banner = "";
 	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
-	if (options->bundle && options->print != PRINT_C)
-		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
-	if (options->amplitude && options->print != PRINT_RESPONSE &&
-	    !(options->print == PRINT_PLOT && !options->campbell && has_frf(options->value)))
-		wrong_usage("--amplitude goes with --response and --plot frf");
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
 	note_all(options);
-	check_a2l(options);
-	check_campbell(options);
-	check_fmu(options);
-	find_header(options);
-	check_names(options);
+	find_together(options);
 }

@@ -41,6 +41,6 @@ const struct whirl_mode *mode_of_branch(const struct modes_at *at, int branch); 
 
 /* ---- campbell_picture.c ---- */
 
-void print_campbell(FILE *to, const struct campbell *c, enum picture_format as);
+void print_campbell(FILE *to, const struct campbell *c, const struct picture_look *look, enum picture_format as);
 
 #endif

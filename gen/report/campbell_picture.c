@@ -162,9 +162,9 @@ static const char *orders_text(const struct campbell *c, double high)
 	const char *text = "";
 	for (int i = 0; i < c->orders; i++) {
 		const double slope = c->order[i] * c->hertz, to = fmin(c->to, high / slope);
-		text = format("%sset arrow from %.10g,%.10g to %.10g,%.10g nohead lc rgb '#909090'\n", text, c->from,
+		text = format("%sset arrow from %.10g,%.10g to %.10g,%.10g nohead lc rgb faint\n", text, c->from,
 			      fmin(high, slope * c->from), to, slope * to);
-		text = format("%sset label '%gx' at %.10g,%.10g %s tc rgb '#505050' font ',9'\n", text, c->order[i],
+		text = format("%sset label '%gx' at %.10g,%.10g %s tc rgb ink font small\n", text, c->order[i],
 			      to, slope * to, to < c->to ? "center offset 0,0.5" : "left offset 0.5,0");
 	}
 	return text;
@@ -176,8 +176,8 @@ static const char *crossings_text(const struct campbell *c)
 	const char *text = "";
 	for (int i = 0; i < c->crossings; i++) {
 		const struct whirl_crossing *x = &c->crossing[i];
-		text = format("%sset label '%.4g' at %.10g,%.10g %s font ',9' front\n", text, x->value, x->value,
-			      x->mode.hertz, x->mode.whirl == WHIRL_FORWARD ? "right offset -0.5,0.8"
+		text = format("%sset label '%.4g' at %.10g,%.10g %s tc rgb ink font small front\n", text, x->value,
+			      x->value, x->mode.hertz, x->mode.whirl == WHIRL_FORWARD ? "right offset -0.5,0.8"
 									    : "left offset 0.5,-0.8");
 	}
 	return text;
@@ -191,47 +191,86 @@ static void print_crossings(FILE *to, const struct campbell *c)
 	fputs("END\n", to);
 }
 
-static void print_script(FILE *to, const struct campbell *c)
+struct campbell_sheet {
+	const struct campbell *c;
+	const struct picture_look *look;
+	double width, height, panels;   /* panels: the part of the height below the title */
+};
+
+static struct campbell_sheet sheet_of(const struct campbell *c, const struct picture_look *look)
 {
-	const double most = highest(c, false), high = most > 0 ? 1.08 * most : 1, damped = highest(c, true);
-	const double least = lowest_ratio(c);
-	const char *frame = format("reset\nset encoding utf8\nset grid lt 1 lc rgb '#e4e4e4'\n"
-				   "set border lc rgb '#606060'\nset lmargin 12\nset rmargin 16\n"
-				   "set key outside right top noautotitle\nset xrange [%.10g:%.10g]\n", c->from, c->to);
-	for (enum whirl w = WHIRL_NONE; w <= WHIRL_MIXED; w++)
-		if (has_whirl(c, w))
-			print_curves(to, c, w);
-	print_crossings(to, c);
-	fprintf(to, "set multiplot\n%sset origin 0,0.34\nset size 1,0.66\nset title '%s: modes over %s%s'\n", frame,
-		c->name, c->param, c->pairs ? format(", whirl by %s", pairs_text(c)) : "");
+	struct campbell_sheet s = { c, look, look->paper ? PICTURE_COLUMN : PICTURE_WIDE, look->paper ? 300 : 640, 1 };
+	if (look->width > 0) {
+		s.width = picture_points(look, look->width);
+		s.height = picture_points(look, look->height);
+	}
+	if (look->title)
+		s.panels = 1 - (8 + PICTURE_LINE * picture_heading_lines(look->title, s.width)) / s.height;
+	return s;
+}
+
+/* From so far up, so high, both parts of the sheet below the title */
+static void begin_panel(FILE *to, const struct campbell_sheet *s, double from, double high)
+{
+	fputs("reset\n", to);
+	picture_colours(to, s->look);
+	fprintf(to, "set lmargin %d\nset rmargin 16\nset key outside right top noautotitle\nset xrange [%.10g:%.10g]\n"
+		    "set origin 0,%g\nset size 1,%g\n", s->width < 500 ? 9 : 12, s->c->from, s->c->to,
+		from * s->panels, high * s->panels);
+}
+
+static void print_frequencies(FILE *to, const struct campbell_sheet *s)
+{
+	const struct campbell *c = s->c;
+	const double most = highest(c, false), high = most > 0 ? 1.08 * most : 1;
+	begin_panel(to, s, 0.34, 0.66);
+	if (s->look->title)
+		picture_heading(to, s->look, s->look->title, 0, s->width, s->height);
+	else
+		fprintf(to, "set title '%s: modes over %s%s'\n", c->name, c->param,
+			c->pairs ? format(", whirl by %s", pairs_text(c)) : "");
 	fprintf(to, "set bmargin 0.8\nset format x ''\nset ylabel 'f [Hz]'\nset yrange [0:%.10g]\n%s%s%s%s\n", high,
 		orders_text(c, high), crossings_text(c), curves_text(c, 2),
-		c->crossings ? ", $crossings using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb '#000000' title 'crossing'"
+		c->crossings ? ", $crossings using 1:2 with points pt 6 ps 1.1 lw 1.6 lc rgb ink title 'crossing'"
 			     : "");
-	fprintf(to, "%sset origin 0,0\nset size 1,0.34\nset key off\nset tmargin 0.8\nset xlabel '%s [%s]'\n"
-		    "set ylabel 'damping ratio'\nset format y '%%.3g'\nset yrange [%.10g:%.10g]\n%s\n"
-		    "unset multiplot\n", frame, c->param, c->unit, 1.1 * least,
+}
+
+static void print_ratios(FILE *to, const struct campbell_sheet *s)
+{
+	const struct campbell *c = s->c;
+	const double damped = highest(c, true), least = lowest_ratio(c);
+	begin_panel(to, s, 0, 0.34);
+	fprintf(to, "set key off\nset tmargin 0.8\nset xlabel '%s [%s]'\nset ylabel 'damping ratio'\n"
+		    "set format y '%%.3g'\nset yrange [%.10g:%.10g]\n%s\n", c->param, c->unit, 1.1 * least,
 		damped > 0 ? 1.1 * damped : least < 0 ? 0 : 1, curves_text(c, 3));
 }
 
-static void print_picture_of(FILE *to, const struct campbell *c, enum picture_format as)
+static void print_picture_of(FILE *to, const struct campbell *c, const struct picture_look *look,
+			     enum picture_format as)
 {
-	enum { WIDE = 900, TALL = 640 };
+	const struct campbell_sheet s = sheet_of(c, look);
 	FILE *script = new_script();
-	print_terminal(script, as, WIDE, TALL, "campbell");
-	print_script(script, c);
+	begin_picture(script, look, as, (int)s.width, (int)s.height, "campbell");
+	for (enum whirl w = WHIRL_NONE; w <= WHIRL_MIXED; w++)
+		if (has_whirl(c, w))
+			print_curves(script, c, w);
+	print_crossings(script, c);
+	fputs("set multiplot\n", script);
+	print_frequencies(script, &s);
+	print_ratios(script, &s);
+	fputs("unset multiplot\n", script);
 	draw(to, script);
 	fclose(script);
 }
 
-void print_campbell(FILE *to, const struct campbell *c, enum picture_format as)
+void print_campbell(FILE *to, const struct campbell *c, const struct picture_look *look, enum picture_format as)
 {
 	if (as == PICTURE_CSV)
 		print_csv(to, c);
 	else if (as == PICTURE_JSON)
 		print_json(to, c);
 	else
-		print_picture_of(to, c, as);
+		print_picture_of(to, c, look, as);
 	for (int i = 0; i < c->crossings && as != PICTURE_CSV && as != PICTURE_JSON; i++)
 		fprintf(stderr, "plgen: note: %s\n", crossing_text(c, &c->crossing[i]));
 }

@@ -2,16 +2,19 @@
 /* One page of HTML with everything in it: equations, matrices, modes, pictures, what was chosen, what it costs, how
  * far it may be off. It reads well at 400 points of width too: pictures have a sheet of that width, text breaks, and
  * matrices alone move in frames of their own. */
+#include "host/picture.h"
 #include "report/report.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
 
 #include <math.h>
+#include <string.h>
 
 struct section {
 	const char *title;
-	void (*print)(FILE *to, const struct step *step);
+	void (*print)(FILE *to, const struct step *step); /* NULL: nothing before its picture */
 	bool (*applies)(const struct step *step); /* NULL: always */
+	const char *picture;            /* the kind that follows; NULL: none */
 };
 
 static const char style[] =
@@ -24,13 +27,18 @@ static const char style[] =
 	"white-space:pre-wrap;overflow-wrap:anywhere}\n"
 	"table{border-collapse:collapse;font-size:.9rem}td,th{padding:.2em .7em;text-align:right;"
 	"border-bottom:1px solid #e4e4e4;white-space:nowrap}th{font-weight:600}\n"
-	"td.name,th.name{text-align:left}table.matrix{display:inline-table;margin:.3em 1.4em .3em 0;"
-	"border-left:2px solid #444;border-right:2px solid #444}table.matrix td{border:0}\n"
+	"td.name,th.name{text-align:left}.matrix,.shapes{display:inline-table;vertical-align:top;"
+	"margin:.3em 1.4em .3em 0}table.matrix{border-left:2px solid #444;"
+	"border-right:2px solid #444}table.matrix td{border:0}\n"
 	"figure{margin:.6em 0}figure svg{display:block;width:100%;height:auto}.narrow{display:none}\n"
 	"@media(max-width:40rem){.broad{display:none}.narrow{display:block}body{padding:.6rem}"
 	"table{font-size:.75rem}td,th{padding:.2em .35em}td,th{white-space:normal}"
 	"td.name{overflow-wrap:anywhere}td.name:last-child{min-width:8em}table.matrix td{white-space:nowrap}"
 	"pre{font-size:.75rem}}\n";
+
+static const char dark[] =
+	"body{color:#dde1e6;background:#14171c}pre{background:#20252c}a{color:#7fb2f0}"
+	"h2,td,th{border-color:#363c45}table.matrix{border-color:#8b929c}\n";
 
 /* ---- text as HTML ---- */
 
@@ -79,16 +87,84 @@ static void print_equations(FILE *to, const struct step *step)
 	print_words(to, step, text_equations);
 }
 
-static void print_matrix(FILE *to, const char *name, int n, const mpq_t *A)
+/* ---- tables of many columns ---- */
+
+/* Printed as tables of a few columns each, which stand next to each other as far as there is room, so that a narrow
+ * window moves up and down alone. */
+struct wide_table {
+	const char *class;
+	int rows, columns;
+	const char *corner, **row, **column;    /* heads */
+	const char **entry;             /* [row][column] */
+};
+
+static struct wide_table wide_table_new(const char *class, int rows, int columns)
 {
-	fprintf(to, "<div class=\"wide\">%s = <table class=\"matrix\">\n", name);
-	for (int i = 0; i < n; i++) {
-		fputs("<tr>", to);
-		for (int j = 0; j < n; j++)
-			fprintf(to, "<td>%s</td>", readable_text(A[i * n + j]));
+	return (struct wide_table){ class, rows, columns, "", ARRAY(const char *, rows + 1),
+			       ARRAY(const char *, columns + 1), ARRAY(const char *, rows * columns + 1) };
+}
+
+static size_t longest(int count, const char *const *text, int stride)
+{
+	size_t most = 0;
+	for (int i = 0; i < count; i++) {
+		const size_t length = strlen(text[i * stride]);
+		most = length > most ? length : most;
+	}
+	return most;
+}
+
+/* The column behind those that have room beside the heads of rows in a window of 400 points */
+static int last_column(const struct wide_table *t, int first)
+{
+	enum { LETTERS = 44, BETWEEN = 2 };
+	size_t letters = longest(t->rows, t->row, 1);
+	for (int j = first; j < t->columns; j++) {
+		const size_t head = strlen(t->column[j]), entries = longest(t->rows, t->entry + j, t->columns);
+		letters += (head > entries ? head : entries) + BETWEEN;
+		if (letters > LETTERS && j > first)
+			return j;
+	}
+	return t->columns;
+}
+
+static void print_columns(FILE *to, const struct wide_table *t, int first, int last)
+{
+	fprintf(to, "<table class=\"%s\">\n<tr><th class=\"name\">%s</th>", t->class, t->corner);
+	for (int j = first; j < last; j++)
+		fprintf(to, "<th>%s</th>", escaped(t->column[j]));
+	fputs("</tr>\n", to);
+	for (int i = 0; i < t->rows; i++) {
+		fprintf(to, "<tr><th class=\"name\">%s</th>", escaped(t->row[i]));
+		for (int j = first; j < last; j++)
+			fprintf(to, "<td>%s</td>", t->entry[i * t->columns + j]);
 		fputs("</tr>\n", to);
 	}
-	fputs("</table></div>\n", to);
+	fputs("</table>\n", to);
+}
+
+static void print_wide_table(FILE *to, const struct wide_table *t)
+{
+	fputs("<div class=\"wide\">\n", to);
+	for (int first = 0, last; first < t->columns; first = last) {
+		last = last_column(t, first);
+		print_columns(to, t, first, last);
+	}
+	fputs("</div>\n", to);
+}
+
+static void print_matrix(FILE *to, const char *name, const struct model *model, const mpq_t *A)
+{
+	const int n = model->n;
+	struct wide_table t = wide_table_new("matrix", n, n);
+	t.corner = name;
+	for (int i = 0; i < n; i++) {
+		t.row[i] = format("%d", i + 1);
+		t.column[i] = model->names.coord[i];
+		for (int j = 0; j < n; j++)
+			t.entry[i * n + j] = readable_text(A[i * n + j]);
+	}
+	print_wide_table(to, &t);
 }
 
 static void print_determinant(FILE *to, const struct step *step)
@@ -106,10 +182,10 @@ static void print_matrices(FILE *to, const struct step *step)
 			? "Of the terms that are linear with constant coefficients: " : "");
 	for (int i = 0; i < model->n; i++)
 		fprintf(to, "%s %s", i ? "," : "", escaped(model->names.coord[i]));
-	fputs(".</p>\n", to);
-	print_matrix(to, "M", model->n, model->system.M);
-	print_matrix(to, "C", model->n, model->system.C);
-	print_matrix(to, "K", model->n, model->system.K);
+	fputs("; a row for each equation, as written.</p>\n", to);
+	print_matrix(to, "M", model, model->system.M);
+	print_matrix(to, "C", model, model->system.C);
+	print_matrix(to, "K", model, model->system.K);
 	if (!is_nonlinear(step))
 		print_determinant(to, step);
 }
@@ -154,23 +230,18 @@ static void print_shapes(FILE *to, const struct step *step)
 	const struct model *model;
 	struct mode_shape *shape;
 	int count = shapes_of_step(step, &shape, &model);
-	fputs("<p>The largest entry of each is 1.</p>\n<div class=\"wide\"><table>\n<tr><th>frequency [Hz]</th>", to);
+	struct wide_table t = wide_table_new("shapes", count, model->n);
+	fputs("<p>The largest entry of each is 1.</p>\n", to);
+	t.corner = "[Hz]";
 	for (int i = 0; i < model->n; i++)
-		fprintf(to, "<th>%s</th>", escaped(model->names.coord[i]));
-	fputs("</tr>\n", to);
+		t.column[i] = model->names.coord[i];
 	for (int k = 0; k < count; k++) {
-		fprintf(to, "<tr><td>%.6g</td>", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
+		t.row[k] = format("%.6g", mpfr_get_d(shape[k].pole->hertz, MPFR_RNDN));
 		for (int i = 0; i < model->n; i++)
-			fprintf(to, "<td>%s</td>", entry_text(&shape[k], i));
-		fputs("</tr>\n", to);
+			t.entry[k * model->n + i] = entry_text(&shape[k], i);
 	}
-	fputs("</table></div>\n", to);
-	picture_in_page(to, step, "modes");
+	print_wide_table(to, &t);
 }
-
-static void print_poles(FILE *to, const struct step *step) { picture_in_page(to, step, "poles"); }
-static void print_frf(FILE *to, const struct step *step) { picture_in_page(to, step, "frf"); }
-static void print_responses(FILE *to, const struct step *step) { picture_in_page(to, step, "response"); }
 
 static bool has_transfers(const struct step *step)
 {
@@ -223,17 +294,17 @@ static void print_cost(FILE *to, const struct step *step)
 }
 
 static const struct section sections[] = {
-	{ "Equations", print_equations, NULL },
-	{ "Matrices", print_matrices, NULL },
-	{ "What is not told, and why", print_left_out, is_nonlinear },
-	{ "Poles and modes", print_modes, is_linear_model },
-	{ "Poles in the plane", print_poles, is_linear_model },
-	{ "Mode shapes", print_shapes, has_shapes },
-	{ "Static gains and zeros", print_gains, has_transfers },
-	{ "Frequency responses", print_frf, has_transfers },
-	{ "Response from the start", print_responses, has_response },
-	{ "What was chosen, and why", print_chosen, NULL },
-	{ "Cost and error of a step", print_cost, NULL }
+	{ "Equations", print_equations, NULL, NULL },
+	{ "Matrices", print_matrices, NULL, NULL },
+	{ "What is not told, and why", print_left_out, is_nonlinear, NULL },
+	{ "Poles and modes", print_modes, is_linear_model, NULL },
+	{ "Poles in the plane", NULL, is_linear_model, "poles" },
+	{ "Mode shapes", print_shapes, has_shapes, "modes" },
+	{ "Static gains and zeros", print_gains, has_transfers, NULL },
+	{ "Frequency responses", NULL, has_transfers, "frf" },
+	{ "Response from the start", NULL, has_response, "response" },
+	{ "What was chosen, and why", print_chosen, NULL, NULL },
+	{ "Cost and error of a step", print_cost, NULL, NULL }
 };
 enum { SECTIONS = sizeof sections / sizeof *sections };
 
@@ -242,12 +313,13 @@ static bool is_there(const struct section *section, const struct step *step)
 	return !section->applies || section->applies(step);
 }
 
-void print_page(FILE *to, const struct step *step, const char *options)
+void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look)
 {
 	const struct model *model = step->shown->model;
+	const char *title = escaped(look->title ? look->title : model->name);
 	fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
-		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s</style>\n"
-		    "</head>\n<body>\n<h1>%s</h1>\n", model->name, style, model->name);
+		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s%s</style>\n"
+		    "</head>\n<body>\n<h1>%s</h1>\n", title, style, look->dark ? dark : "", title);
 	fprintf(to, "<p>%d coordinate%s, %d states, %d input%s, %d output%s; plgen " PLGEN_VERSION "%s%s.</p>\n<nav>",
 		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
 		model->system.inputs, model->system.inputs == 1 ? "" : "s", model->outputs,
@@ -260,7 +332,10 @@ void print_page(FILE *to, const struct step *step, const char *options)
 		if (!is_there(&sections[i], step))
 			continue;
 		fprintf(to, "<h2 id=\"s%d\">%s</h2>\n", i, sections[i].title);
-		sections[i].print(to, step);
+		if (sections[i].print)
+			sections[i].print(to, step);
+		if (sections[i].picture)
+			picture_in_page(to, step, sections[i].picture, look->dark);
 	}
 	fputs("</body>\n</html>\n", to);
 }

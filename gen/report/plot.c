@@ -11,7 +11,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { WIDE = 900, NARROW = 400, SHEETS = 2, CURVES = PICTURE_CURVES, DRIVES = 6, OUTPUTS = 12, SHAPES = 12,
+enum { NARROW = 400, SHEETS = 2, CURVES = PICTURE_CURVES, DRIVES = 6, OUTPUTS = 12, SHAPES = 12,
        POINTS = 600 };
 
 struct panel {
@@ -21,6 +21,7 @@ struct panel {
 struct picture {
 	const struct step *step;
 	const char *amplitude;          /* of an excitation that sweeps; NULL: frequency responses are linear */
+	const struct picture_look *look;
 	FILE *data;                     /* $name << END ... */
 	int sheets, width[SHEETS], height[SHEETS];
 	int panels;
@@ -29,16 +30,23 @@ struct picture {
 
 /* ---- panels ---- */
 
+/* On a paper lower, since letters are smaller there */
+static int height_of(const struct picture *p, int height)
+{
+	return p->look->paper ? height * 7 / 10 : height;
+}
+
 static void add_panel(struct picture *p, int sheet, int left, int width, int height, const char *text)
 {
-	*MORE(p->panel, p->panels) = (struct panel){ sheet, left, p->height[sheet], width, height, text };
+	*MORE(p->panel, p->panels) =
+		(struct panel){ sheet, left, p->height[sheet], width, height_of(p, height), text };
 }
 
 /* Over the whole width, the next below it */
 static void add_row(struct picture *p, int sheet, int height, const char *text)
 {
 	add_panel(p, sheet, 0, p->width[sheet], height, text);
-	p->height[sheet] += height;
+	p->height[sheet] += height_of(p, height);
 }
 
 static const char above[] = "set key outside top left horizontal Left reverse samplen 3\n";
@@ -66,9 +74,9 @@ static void note_first(int shown, int all, const char *what)
 static void plot_poles(struct picture *p)
 {
 	need_linear(p->step, "poles");
-	const char *text = draw_poles(p->data, p->step);
+	const char *text = draw_poles(p->data, p->step, p->look->paper ? 16 : 27);
 	for (int sheet = 0; sheet < p->sheets; sheet++)
-		add_row(p, sheet, 480, p->width[sheet] == NARROW ? format("set xtics rotate by -45\n%s", text) : text);
+		add_row(p, sheet, 480, p->width[sheet] <= NARROW ? format("set xtics rotate by -45\n%s", text) : text);
 }
 
 /* ---- mode shapes ---- */
@@ -104,16 +112,17 @@ static void add_shape(struct picture *p, int sheet, const struct model *model, c
 {
 	enum { TALL = 210 };
 	bool twofold = is_complex(shape, model->n);
-	int most = p->width[sheet] / 300, columns = shapes < most ? shapes : most, wide = p->width[sheet] / columns;
+	int most = p->width[sheet] < 300 ? 1 : p->width[sheet] / 300;
+	int columns = shapes < most ? shapes : most, wide = p->width[sheet] / columns;
 	double hertz = mpfr_get_d(shape->pole->hertz, MPFR_RNDN);
 	double ratio = mpfr_get_d(shape->pole->damping_ratio, MPFR_RNDN);
 	add_panel(p, sheet, k % columns * wide, wide, TALL, format(
 		"set title '%.5g Hz, damping ratio %.3g'\nset lmargin 7\nset rmargin 2\nset xzeroaxis lt 1 lc rgb "
-		"'#606060'\nset ytics 0.5\n%s%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 %s title 're'%s\n",
+		"frame\nset ytics 0.5\n%s%splot [0.5:%d.5] [-1.15:1.15] $shape%d using 1:2 %s title 're'%s\n",
 		hertz, ratio, twofold ? above : "unset key\n", coordinate_tics(model, wide / 60), model->n, k + 1,
 		curve(0, NULL, 0), twofold ? format(", '' using 1:3 %s title 'im'", curve(1, NULL, 0)) : ""));
 	if (k % columns == columns - 1 || k == shapes - 1)
-		p->height[sheet] += TALL;
+		p->height[sheet] += height_of(p, TALL);
 }
 
 static void plot_modes(struct picture *p)
@@ -429,28 +438,34 @@ static const char *name_of(const char *list)
 	return name;
 }
 
-void print_terminal(FILE *to, enum picture_format as, int width, int height, const char *name)
+static const char *ending_of(enum picture_format as)
 {
-	if (as == PICTURE_PDF)
-		fprintf(to, "set term pdfcairo noenhanced size 9in,%.2fin font 'sans,10'\n", height / 100.0);
-	else if (as == PICTURE_PNG)
-		fprintf(to, "set term pngcairo noenhanced size %d,%d font 'sans,11' background '#ffffff'\n", width,
-			height);
-	else
-		fprintf(to, "set term svg noenhanced size %d,%d font 'sans,12' background '#ffffff' name \"%s\"\n",
-			width, height, name_of(name));
+	return as == PICTURE_PDF ? "pdf" : as == PICTURE_PNG ? "png" : "svg";
+}
+
+void begin_picture(FILE *to, const struct picture_look *look, enum picture_format as, int width, int height,
+		   const char *name)
+{
+	const struct picture_inks *inks = picture_inks_of(look);
+	const double letters = picture_terminal(to, look, ending_of(as), width, height, name_of(name));
+	fprintf(to, "ink = '%s'\nframe = '%s'\nfaint = '%s'\nsmall = ',%.1f'\n", inks->text, inks->frame, inks->faint,
+		0.85 * letters);
 }
 
 static void print_panels(FILE *to, const struct picture *p, int sheet)
 {
 	const double wide = p->width[sheet], tall = p->height[sheet];
+	int titled = 0;
 	fprintf(to, "set multiplot\n");
 	for (int i = 0; i < p->panels; i++) {
 		const struct panel *panel = &p->panel[i];
 		if (panel->sheet != sheet)
 			continue;
-		fprintf(to, "reset\nset encoding utf8\nset grid lt 1 lc rgb '#e4e4e4'\nset border lc rgb '#606060'\n"
-			    "set origin %.6f,%.6f\nset size %.6f,%.6f\n%s", panel->left / wide,
+		fputs("reset\n", to);
+		picture_colours(to, p->look);
+		if (!titled && p->look->title)
+			titled = picture_heading(to, p->look, p->look->title, 0, wide, tall);
+		fprintf(to, "set origin %.6f,%.6f\nset size %.6f,%.6f\n%s", panel->left / wide,
 			1 - (panel->top + panel->height) / tall, panel->width / wide, panel->height / tall,
 			panel->text);
 	}
@@ -467,16 +482,22 @@ bool has_frf(const char *list)
 	return false;
 }
 
-static struct picture picture_of(const struct step *step, const char *list, const char *amplitude, int sheets)
+static struct picture picture_of(const struct step *step, const char *list, const char *amplitude,
+				 const struct picture_look *look, int sheets)
 {
-	struct picture p = { .step = step, .amplitude = amplitude, .data = new_script(), .sheets = sheets,
-			     .width = { WIDE, NARROW } };
+	const double width = look->width > 0 ? picture_points(look, look->width)
+			   : look->paper ? PICTURE_COLUMN : PICTURE_WIDE;
+	struct picture p = { .step = step, .amplitude = amplitude, .look = look, .data = new_script(),
+			     .sheets = sheets, .width = { (int)width, NARROW } };
+	if (look->title)
+		p.height[0] = 10 + PICTURE_LINE * picture_heading_lines(look->title, width);
+	const int begun = p.height[0];
 	for (const char *name = list; *name; name += *name == ',') {
 		size_t length = strcspn(name, ",");
 		kind_of(name, length)->plot(&p);
 		name += length;
 	}
-	if (p.height[0] == 0)
+	if (p.height[0] == begun)
 		error(step->model->request.step_at, NULL,
 		      "there is nothing to draw: no output that is linear reacts to an input or a load");
 	return p;
@@ -485,16 +506,18 @@ static struct picture picture_of(const struct step *step, const char *list, cons
 static void draw_sheet(FILE *to, const struct picture *p, int sheet, enum picture_format as, const char *name)
 {
 	FILE *script = new_script();
-	print_terminal(script, as, p->width[sheet], p->height[sheet], name);
+	const int tall = p->look->height > 0 ? (int)picture_points(p->look, p->look->height) : p->height[sheet];
+	begin_picture(script, p->look, as, p->width[sheet], tall, name);
 	copy_file(p->data, script);
 	print_panels(script, p, sheet);
 	draw(to, script);
 	fclose(script);
 }
 
-void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as)
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude,
+		   const struct picture_look *look, enum picture_format as)
 {
-	struct picture p = picture_of(step, list, amplitude, 1);
+	struct picture p = picture_of(step, list, amplitude, look, 1);
 	draw_sheet(to, &p, 0, as, list);
 	fclose(p.data);
 }
@@ -514,10 +537,12 @@ static void put_in_page(FILE *to, FILE *picture, const char *class)
 	fclose(picture);
 }
 
-void picture_in_page(FILE *to, const struct step *step, const char *kind)
+/* Whose title is that of the page */
+void picture_in_page(FILE *to, const struct step *step, const char *kind, bool dark)
 {
+	const struct picture_look look = { .dark = dark };
 	static const char *const class[SHEETS] = { "broad", "narrow" };
-	struct picture p = picture_of(step, kind, NULL, SHEETS);
+	struct picture p = picture_of(step, kind, NULL, &look, SHEETS);
 	for (int sheet = 0; sheet < SHEETS; sheet++) {
 		FILE *picture = new_script();
 		draw_sheet(picture, &p, sheet, PICTURE_SVG, format("%s,%s", kind, class[sheet]));

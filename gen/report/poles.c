@@ -38,9 +38,9 @@ static const char *rays_of(double left, double high)
 			continue;
 		before = turn;
 		for (int side = 1; side >= -1; side -= 2)
-			text = format("%sset arrow from 0,0 to %.10g,%.10g nohead lc rgb '#c8c8c8' lw 0.8\n", text, x,
+			text = format("%sset arrow from 0,0 to %.10g,%.10g nohead lc rgb faint lw 0.6\n", text, x,
 				      side * y);
-		text = format("%sset label '%g' at %.10g,%.10g %s tc rgb '#808080'\n", text, ratio[i], x, y,
+		text = format("%sset label '%g' at %.10g,%.10g %s tc rgb frame\n", text, ratio[i], x, y,
 			      turn > 1 ? "center offset 0,0.5" : "left offset 1.6,0.7");
 	}
 	return text;
@@ -85,16 +85,15 @@ static void spread(int count, struct pole_label *label, double high, double apar
 }
 
 /* With a line to each pole; all of them, or none where the column is too short: *none */
-static const char *label_poles(int count, struct pole_label *label, double high, bool *none)
+static const char *label_poles(int count, struct pole_label *label, double high, int lines, bool *none)
 {
-	enum { COLUMN = 360, LETTERS = 13 };    /* in points of a screen */
 	const char *text = "";
-	*none = count > COLUMN / LETTERS;
-	spread(count, label, high, 2 * high * LETTERS / COLUMN);
+	*none = count > lines;
+	spread(count, label, high, 2 * high / lines);
 	for (int i = 0; i < count && !*none; i++)
-		text = format("%sset arrow from %.10g,%.10g to graph 1.02,first %.10g nohead lc rgb '#a8a8a8' lw 0.6\n"
-			      "set label \"%s\" at graph 1.025,first %.10g left font ',10'\n", text, label[i].re,
-			      label[i].im, label[i].at, label[i].text, label[i].at);
+		text = format("%sset arrow from %.10g,%.10g to graph 1.02,first %.10g nohead lc rgb faint lw 0.6\n"
+			      "set label \"%s\" at graph 1.025,first %.10g left tc rgb ink font small\n", text,
+			      label[i].re, label[i].im, label[i].at, label[i].text, label[i].at);
 	return text;
 }
 
@@ -110,7 +109,7 @@ static void print_poles(FILE *to, int count, const struct pole_report *pole)
 	fputs("END\n", to);
 }
 
-const char *draw_poles(FILE *data, const struct step *step)
+const char *draw_poles(FILE *data, const struct step *step, int lines)
 {
 	struct pole_report *pole;
 	double left, right, high;
@@ -118,11 +117,11 @@ const char *draw_poles(FILE *data, const struct step *step)
 	int count = poles_of(step->model, step->written, &pole);
 	window_of_poles(count, pole, &left, &right, &high);
 	print_poles(data, count, pole);
-	const char *labels = label_poles(count, labels_of(count, pole), high, &none);
+	const char *labels = label_poles(count, labels_of(count, pole), high, lines, &none);
 	return format(
 		"set title 'poles, and rays of equal damping ratio%s'\nunset key\nset lmargin 9\nset rmargin %d\n"
-		"set tmargin 3.4\nset xlabel 're [1/s]'\nset ylabel 'im [rad/s]'\nset xzeroaxis lt 1 lc rgb '#606060'\n"
-		"set yzeroaxis lt 1 lc rgb '#606060'\n%s%s"
+		"set tmargin 3.4\nset xlabel 're [1/s]'\nset ylabel 'im [rad/s]'\nset xzeroaxis lt 1 lc rgb frame\n"
+		"set yzeroaxis lt 1 lc rgb frame\n%s%s"
 		"plot [%.10g:%.10g] [%.10g:%.10g] $poles using 1:2 with points pt 2 ps 1.2 lw 2 lc rgb '%s'\n",
 		none ? format("; %d, listed by --explain", count) : "", none ? 4 : 16, rays_of(left, high), labels,
 		left, right, -high, high, picture_curve[0].colour);

@@ -17,6 +17,7 @@ struct modal_truncation;
 struct output;
 struct resolvent;
 struct linear;
+struct picture_look;
 
 /* ---- report.c: poles and polynomials for a reader ---- */
 
@@ -225,22 +226,26 @@ void draw(FILE *to, FILE *script);                          /* what gnuplot make
 
 /* ---- poles.c, plot.c: pictures ---- */
 
-const char *draw_poles(FILE *data, const struct step *step);   /* $poles, and the commands of a panel */
+/* $poles, and the commands of a panel, beside which so many lines of text have room */
+const char *draw_poles(FILE *data, const struct step *step, int lines);
 
 #define PICTURE_KINDS "response, poles, modes and frf, with commas between, or campbell"
 enum picture_format { PICTURE_NONE, PICTURE_SVG, PICTURE_PNG, PICTURE_PDF, PICTURE_CSV, PICTURE_JSON };
 const char *wrong_picture(const char *list);                /* of KIND,...: one that is none; NULL: all are */
 enum picture_format picture_of_file(const char *path);      /* by its ending; NULL: SVG */
-/* For gnuplot; name: of what is drawn, with commas between */
-void print_terminal(FILE *to, enum picture_format as, int width, int height, const char *name);
+/* For gnuplot its terminal, its colours (ink, frame, faint), a font (small); name: of what is drawn, commas between */
+void begin_picture(FILE *to, const struct picture_look *look, enum picture_format as, int width, int height,
+		   const char *name);
 bool has_frf(const char *list);                             /* of kinds, none of them wrong */
 /* amplitude: of the excitation that frf sweeps with; NULL: it does not */
-void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude, enum picture_format as);
-void picture_in_page(FILE *to, const struct step *step, const char *kind);   /* inline SVG */
+void print_picture(FILE *to, const struct step *step, const char *list, const char *amplitude,
+		   const struct picture_look *look, enum picture_format as);
+void picture_in_page(FILE *to, const struct step *step, const char *kind, bool dark);   /* inline SVG */
 
 /* ---- page.c ---- */
 
-void print_page(FILE *to, const struct step *step, const char *options);    /* HTML, with everything in it */
+/* HTML, with everything in it */
+void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look);
 
 /* ---- program.c, explain.c, json.c, solution.c ---- */
 

@@ -59,8 +59,8 @@ static void take_stats(struct options *o, const char *value) { (void)value; o->s
 static void take_peak(struct options *o, const char *value) { (void)value; o->peak = true; }
 static void take_show(struct options *o, const char *value) { o->show = value; }
 static void take_psd(struct options *o, const char *value) { read_window(o, value); }
-static void take_dark(struct options *o, const char *value) { (void)value; o->look.dark = true; }
-static void take_paper(struct options *o, const char *value) { (void)value; o->look.paper = true; }
+static void take_dark(struct options *o, const char *value) { (void)value; o->look.as.dark = true; }
+static void take_paper(struct options *o, const char *value) { (void)value; o->look.as.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
 static void take_units(struct options *o, const char *value) { (void)value; o->units = true; }
 static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
@@ -78,13 +78,8 @@ static void take_log(struct options *o, const char *value)
 
 static void take_size(struct options *o, const char *value)
 {
-	char *copy = need(strdup(value)), *by = strchr(copy, 'x');
-	if (by)
-		*by = 0;
-	if (!by || !read_number(copy, &o->look.width) || !read_number(by + 1, &o->look.height) ||
-	    !(o->look.width >= 20 && o->look.width <= 10000 && o->look.height >= 20 && o->look.height <= 10000))
+	if (!picture_size(&o->look.as, value))
 		wrong_usage(format("--size takes WIDTHxHEIGHT, each from 20 to 10000, found '%s'", value));
-	free(copy);
 }
 
 /* A file, or ranges: of several every combination */
@@ -129,7 +124,7 @@ static void refuse_controls(const char *value, const char *what)
 static void take_title(struct options *o, const char *value)
 {
 	refuse_controls(value, "--title: the title");
-	o->look.title = value;
+	o->look.as.title = value;
 }
 
 static void take_plot(struct options *o, const char *value)
@@ -301,17 +296,18 @@ static void take_word(struct options *o, const char *word)
 static void check_look(const struct options *o)
 {
 	const struct look *l = &o->look;
-	const char *of_files = l->dark ? "--dark" : l->paper ? "--paper" : l->width > 0 ? "--size" : NULL;
-	const char *any = of_files ? of_files : l->title ? "--title" : l->log ? "--log" : NULL;
+	const struct picture_look *as = &l->as;
+	const char *of_files = as->dark ? "--dark" : as->paper ? "--paper" : as->width > 0 ? "--size" : NULL;
+	const char *any = of_files ? of_files : as->title ? "--title" : l->log ? "--log" : NULL;
 	if (any && !o->plot)
 		wrong_usage(format("%s is of a picture: --plot FILE draws it", any));
 	if (of_files && !o->plot_file)
 		wrong_usage(format("%s is of a picture in a file: --plot FILE.svg", of_files));
-	if (l->dark && l->paper)
+	if (as->dark && as->paper)
 		wrong_usage("--paper is light, and --dark is not");
 	if (l->log && o->ranges == 2 && !o->histories)
 		wrong_usage("--log: the axes of a map are logarithmic where its ranges are, K=A:B:N:log");
-	if (l->paper && strcmp(strrchr(o->plot_file, '.'), ".svg") == 0)
+	if (as->paper && strcmp(strrchr(o->plot_file, '.'), ".svg") == 0)
 		say_note("an SVG names its fonts and has none inside; a .pdf has");
 }
 

@@ -104,9 +104,8 @@ struct range {                          /* of a sweep: NAME=FROM:TO:COUNT[:log] 
 	bool log;
 };
 struct look {                           /* of a picture */
-	bool log_x, log_y, log, dark, paper;    /* log: said which */
-	const char *title;
-	double width, height;                   /* [px], of a paper [mm]; 0: as it comes */
+	bool log_x, log_y, log;                 /* log: said which */
+	struct picture_look as;
 };
 struct cosines;                         /* psd.c */
 struct options {

@@ -179,6 +179,41 @@ PATH=$PWD/own:$PATH "$plgen" --plot frf "$root/models/sdcsf.spec" >script 2>log
 	grep -o 'dt .* pt [0-9]*\|#[0-9a-f]*' | sort | uniq -d >log && [ ! -s log ]
 result $? 'legends above their panels; curves differ in dash, mark and colour'
 
+# Every colour of a dark picture but the curves' is one of the dark page; a title has quotes; lengths of a print: its
+# column of 85 mm has 2008 dots of 600 to an inch
+PATH=$PWD/own:$PATH "$plgen" --plot poles,modes,frf,response --dark --title "It's \"dark\" %d" \
+	"$root/models/sdcsf.spec" >script 2>log
+grep -o "'#[0-9a-f]*'" script | tr -d "'" | sort -u >colours
+grep -o '"#[0-9a-f]*"' "$root/runtime/host/picture.h" | tr -d '"' | sort -u >all
+grep -x -v -F -f all colours >log
+grep -q "^set label 1 'It''s \"dark\" %d' noenhanced at screen" script && ! grep -q '#ffffff\|#202020' colours &&
+	grep -q '#14171c' colours && [ ! -s log ] && [ "$(wc -l <colours)" -gt 6 ]
+result $? 'a dark picture, and its title'
+for size in 85 60x40=1417,945; do
+	# shellcheck disable=SC2046
+	PATH=$PWD/own:$PATH "$plgen" --plot frf --paper -o print.png $([ $size = 85 ] || echo --size ${size%=*}) \
+		"$root/models/sdcsf.spec" 2>log
+	[ $size = 85 ] && dots=2008, || dots=${size#*=}
+	grep -q "pngcairo noenhanced size $dots" print.png
+	result $? "a print of ${size%=*} mm has $dots dots"
+done
+
+# In a page no row of a matrix is wider than 400 points; entries: their number, and the sum of their squares
+"$plgen" --explain=json "$root/models/beam4.spec" 2>log | tr -d ' \n' | sed 's/.*"M":\[\[//; s/\]\],"C".*//' |
+	tr '],[' '\n\n\n' | awk 'NF { n++; sum += $1^2 } END { print n, sum }' >M
+PATH=$PWD/own:$PATH "$plgen" --report "$root/models/beam4.spec" 2>>log | awk '
+	/<table class="matrix">/ { getline; of = />M</ ? "M" : "" }
+	/<\/table>/ { of = "" }
+	of == "M" && /<td>/ {
+		gsub(/<[^>]*>/, " ")
+		for (i = 2; i <= NF; i++) { n++; sum += $i^2 }
+		wide = length($0) > wide ? length($0) : wide
+	}
+	END { print n, sum, wide }' >found
+paste -d ' ' M found | awk '{ print }
+	!($1 == 225 && $3 == 225 && $2 > 0.1 && ($2 / $4 - 1)^2 < 1e-20 && $5 < 62) { exit 1 }' >>log
+result $? 'a page: matrices in tables that a telephone holds'
+
 # ---- without gnuplot, and where it fails ----
 
 # refused STATUS TEXT NAME OPTION...: nothing on standard output
@@ -403,6 +438,13 @@ refused 2 'of campbell also FILE.csv and FILE.json' 'an ending of campbell' --pl
 refused 2 "found 'a.csv'" 'an ending of others' --plot poles -o a.csv "$spec"
 refused 1 'expected two values that rise' 'a sweep that falls' --plot campbell --sweep w=3:1 "$spec"
 refused 1 'expected a number of values from 2' 'one value' --plot campbell --sweep w=0:1:1 "$spec"
+refused 2 '--dark is of a picture: --plot KIND draws it' 'C in the dark' --dark "$spec"
+refused 2 'the page of --report is as wide as its window' 'a page on paper' --report --paper "$spec"
+refused 2 '--paper is light, and --dark is not' 'a paper in the dark' --plot poles --dark --paper "$spec"
+refused 2 "each from 20 to 10000, found '10x400'" 'a picture of 10 points' --plot poles --size 10x400 "$spec"
+refused 2 'has a control character in it' 'a title with commands' --plot poles --title "$(printf 'a\tb')" "$spec"
+refused 2 "--title is of a picture, and 'a.csv' is a table" 'the title of a table' --plot campbell --sweep w=0:1 \
+	--title a -o a.csv "$spec"
 refused 1 'up to 16 numbers above 0' 'order 0' --plot campbell --sweep w=0:1 --orders 0 "$spec"
 refused 1 "'x:q' is none" 'a pair that is none' --plot campbell --sweep w=1:2 --whirl x:q "$root/models/rotor.spec"
 refused 1 "no param is named 'zz'" 'a sweep of nothing' --plot campbell --sweep zz=0:1 "$spec"

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Which options go together, and which names of files. */
+#include "command.h"
+#include "report/report.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+_Noreturn void wrong_usage(const char *message)
+{
+	fprintf(stderr, "plgen: error: %s\nnote: plgen --help lists the options\n", message);
+	exit(2);
+}
+
+bool ends_in(const char *text, const char *end)
+{
+	size_t length = strlen(text), tail = strlen(end);
+	return length > tail && strcmp(text + length - tail, end) == 0;
+}
+
+/* The option that asks for another text than C */
+static const char *option_of_print(enum print print)
+{
+	static const char *const option[] = {
+		[PRINT_HEADER] = "--header", [PRINT_EXPLAIN] = "--explain", [PRINT_JSON] = "--explain",
+		[PRINT_PROGRAM] = "--explain", [PRINT_SOLUTION] = "--solution", [PRINT_RESPONSE] = "--response",
+		[PRINT_PLOT] = "--plot", [PRINT_REPORT] = "--report"
+	};
+	return option[print];
+}
+
+static void find_header(struct options *options)
+{
+	size_t length = options->output ? strlen(options->output) : 0;
+	const enum picture_format as = picture_of_file(options->output);
+	if (options->print == PRINT_PLOT && (as == PICTURE_NONE || (as > PICTURE_PDF && !options->campbell)))
+		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf%s, found '%s'",
+				   options->campbell ? ", of campbell also FILE.csv and FILE.json" : "",
+				   options->output));
+	if (!options->output || options->print != PRINT_C)
+		return;
+	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)
+		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
+	options->header = format("%.*s.h", (int)length - 2, options->output);
+}
+
+static void check_print(const struct options *options)
+{
+	if (options->bundle && options->print != PRINT_C)
+		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
+	if (options->amplitude && options->print != PRINT_RESPONSE &&
+	    !(options->print == PRINT_PLOT && !options->campbell && has_frf(options->value)))
+		wrong_usage("--amplitude goes with --response and --plot frf");
+}
+
+static void check_a2l(const struct options *options)
+{
+	if (options->a2l && (options->print != PRINT_C || options->fmu))
+		wrong_usage(format("--a2l goes with C: it does not go with %s",
+				   options->fmu ? "--fmu" : option_of_print(options->print)));
+	if (options->a2l && !ends_in(options->a2l, ".a2l"))
+		wrong_usage(format("--a2l takes the name of a file, FILE.a2l, found '%s'", options->a2l));
+}
+
+static void check_campbell(const struct options *options)
+{
+	const struct { const char *value, *option; } of[] = {
+		{ options->sweep, "--sweep" }, { options->orders, "--orders" }, { options->whirl, "--whirl" }
+	};
+	for (size_t i = 0; i < sizeof of / sizeof *of; i++)
+		if (of[i].value && !options->campbell)
+			wrong_usage(format("%s goes with --plot campbell", of[i].option));
+	if (options->campbell && !options->sweep)
+		wrong_usage("--plot campbell takes the param and its values from --sweep w=0:500");
+}
+
+static bool has_control(const char *text)
+{
+	for (; *text; text++)
+		if ((unsigned char)*text < ' ' || *text == 127)
+			return true;
+	return false;
+}
+
+static bool is_page(const struct options *options)
+{
+	return options->print == PRINT_REPORT;
+}
+
+static void check_look(const struct options *options)
+{
+	const struct picture_look *look = &options->look;
+	const char *of_files = look->paper ? "--paper" : look->width > 0 ? "--size" : NULL;
+	const char *any = of_files ? of_files : look->dark ? "--dark" : look->title ? "--title" : NULL;
+	const enum picture_format as = picture_of_file(options->output);
+	if (any && options->print != PRINT_PLOT && !is_page(options))
+		wrong_usage(format("%s is of a picture: --plot KIND draws it", any));
+	if (of_files && is_page(options))
+		wrong_usage(format("%s is of --plot: the page of --report is as wide as its window", of_files));
+	if (any && options->campbell && as > PICTURE_PDF)
+		wrong_usage(format("%s is of a picture, and '%s' is a table", any, options->output));
+	if (look->dark && look->paper)
+		wrong_usage("--paper is light, and --dark is not");
+	if (look->title && has_control(look->title))
+		wrong_usage("--title: the title of the picture has a control character in it");
+	if (look->paper && as == PICTURE_SVG)
+		fputs("plgen: note: an SVG names its fonts and has none inside; a .pdf has\n", stderr);
+}
+
+/* Of an FMU everything else that is printed, and what nothing in it would call */
+static void check_fmu(const struct options *options)
+{
+	const size_t length = options->fmu ? strlen(options->fmu) : 0;
+	const struct { bool requested; const char *option; } against[] = {
+		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
+		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
+		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
+	};
+	if (!options->fmu && (options->fmu_version || options->fmu_binary))
+		wrong_usage(format("%s goes with --fmu FILE.fmu",
+				   options->fmu_version ? "--fmu-version" : "--fmu-binary"));
+	if (!options->fmu)
+		return;
+	if (length < 5 || strcmp(options->fmu + length - 4, ".fmu") != 0)
+		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu));
+	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
+		if (against[i].requested)
+			wrong_usage(format("%s does not go with --fmu", against[i].option));
+}
+
+/* The C includes the header by its name, and in a rule of make the paths stand too. */
+static void check_spelling(const struct options *options, const char *const *path, int paths)
+{
+	const char *slash = options->header ? strrchr(options->header, '/') : NULL;
+	const char *name = slash ? slash + 1 : options->header ? options->header : "";
+	if (has_control(name) || strpbrk(name, "\"\\"))
+		wrong_usage("-o: an #include cannot name this file: a quote, a backslash or a control character is in "
+			    "its name");
+	for (int i = 0; i < paths; i++)
+		if (options->depfile && path[i] && has_control(path[i]))
+			wrong_usage("--depfile: a rule of make cannot name a file with a control character in its "
+				    "path");
+}
+
+static void check_names(const struct options *options)
+{
+	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
+			       options->a2l, options->params };
+	enum { PATHS = sizeof path / sizeof *path };
+	check_spelling(options, path, PATHS);
+	for (int i = 0; i < PATHS; i++)
+		for (int j = i + 1; j < PATHS; j++)
+			if (path[i] && path[j] && same_file(path[i], path[j]))
+				wrong_usage(format("'%s' would be written over: each file needs a name of its own",
+						   path[i]));
+}
+
+void find_together(struct options *options)
+{
+	check_print(options);
+	check_a2l(options);
+	check_campbell(options);
+	check_look(options);
+	check_fmu(options);
+	find_header(options);
+	check_names(options);
+}
