@@ -413,8 +413,7 @@ static void meet(FILE *out, const char *kind, const char *gap, const char *varia
 		put_quoted(out, row->method->name);
 		fprintf(out, ",%s,", family_names[row->method->family]);
 		put_found(out, row, row->run ? error_at_outputs(row->run, t) : NAN);
-		put_quoted(out, row->refused ? row->refused : row->method->settings);
-		fprintf(out, ",%.2g\n", t->agreement);
+		fprintf(out, "%.2g\n", t->agreement);
 	}
 	close_rows(&rows);
 	truth_free(t);
@@ -436,7 +435,7 @@ int main(int argc, char **argv)
 	if (flags & 2) {
 		find_settings(p, t, argv[0], quick);
 		FILE *out = table_open(argv[1], "headline_confluence.csv",
-		                       "case,gap,method,family,error,settings,truth_agreement");
+		                       "case,gap,method,family,error,truth_agreement");
 		for (int i = 0; i < 2 * MEETINGS; i++)
 			meet(out, i < MEETINGS ? "twins" : "one-way", meetings[i % MEETINGS].gap, argv[0]);
 		table_close(out, "headline_confluence.csv");

@@ -122,7 +122,7 @@ static bool is_weak(const struct free_subject *s, double end)
 static void free_entry(FILE *csv, const struct free_subject *s, double fastest, const char *name)
 {
 	const double limit = 1 + NOT_GROWING, apart = pow(10, 1.0 / 40);
-	const char *model = s->motion->problem.name, *criterion = "free motion: growth per step at most 1 + 1e-12";
+	const char *model = s->motion->problem.name, *criterion = "free motion";
 	double h = 0.01 / fastest;
 	char step[40] = "any", rate[40] = "";
 	bool none = !(growth(s, h) <= limit);
@@ -247,8 +247,7 @@ static void history_entry(FILE *csv, const struct history *s, double from, const
 	double h = from;
 	char step[40], criterion[400];
 	snprintf(criterion, sizeof criterion,
-	         "history of %g s or %g steps, the shorter, within 10 times the largest of RK4 at %g s; steps of %g s "
-	         "to %g s tried, each %.3g times the one before%s%s", s->model->seconds,
+	         "%g s or %g steps, RK4 at %g s; tried: %g s to %g s, by %.3g%s%s", s->model->seconds,
 	         s->model->most_steps * effort.shorter, s->model->reference, from, s->model->to, apart,
 	         slow ? "; operator at the final speed" : "", s->method ? "" : "; by hand in long double");
 	if (bounded(s, h) > 0)

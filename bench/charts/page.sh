@@ -176,6 +176,7 @@ model() {
 		"$(of_model "$1" history_s)" "$(of_model "$1" unit_s)"
 	made grid -v only="$1" "$folder/matrix.csv"
 	picture "precision_$1"
+	! there precision_methods.csv || echo '<p><a href="index.html#methods">How it was measured</a></p>'
 	for file in "$folder/$1"_*.svg; do
 		name=$(basename "$file" .svg)
 		case $name in
@@ -211,7 +212,7 @@ index() {
 	done
 	if there precision_methods.csv; then
 		echo '<h2 id="methods">Methods</h2>'
-		caption precision
+		caption methods
 		printf '<details><summary>Settings</summary>'
 		table precision_methods.csv
 		echo '</details>'

@@ -118,6 +118,22 @@ cmp cells words >log 2>&1 || cat cells words >>log
 [ ! -s log ]
 result $? 'matrix of given times: the same as a table'
 
+# what is straight, what bends, what failed, what is not timed: the settings that stay, by hand
+cat >curves.csv <<-'END'
+	model,method,setting,largest,ns_median
+	a,straight,1 2 3 4 5,1e-1 1e-2 1e-3 1e-4 1e-5,10 100 1000 1e4 1e5
+	a,bent,1 2 3 4,0.5 0.5 0.05 0.005,10 100 100 100
+	a,failed,1 2,failed failed,none none
+	a,slow,1 2 3,1e-4 1e-7 1e-8,10 dear dear
+END
+sh "$made" thin curves.csv >thin.csv 2>log
+sh "$made" thin thin.csv 2>>log | cmp - thin.csv >>log 2>&1
+printf 'setting\n1 3 5\n1 2 4\n1\n1 3\n' | cmp - <<-END >>log 2>&1
+	$(cut -d , -f 8 thin.csv)
+END
+[ ! -s log ]
+result $? 'curves of given times: thinned as by hand, and once more the same'
+
 whole "$kept"
 result $? 'doc/charts: pages have alts, captions, links that lead somewhere; nothing is on no page'
 titled "$kept" 30
