@@ -26,15 +26,22 @@ _plgen() {
         --real) mapfile -t COMPREPLY < <(compgen -W 'double float' -- "$current"); return ;;
         --accuracy) mapfile -t COMPREPLY < <(compgen -W 'compensated' -- "$current"); return ;;
         --loads) mapfile -t COMPREPLY < <(compgen -W 'exact remainder' -- "$current"); return ;;
-        -o | --depfile | --params | --input | --sweep | --plot)
+        --plot)
+            if [ "${command##*/}" = plgen ]; then
+                mapfile -t COMPREPLY < <(compgen -W 'response poles modes frf campbell' -- "$current")
+            else
+                mapfile -t COMPREPLY < <(compgen -f -- "$current")
+            fi
+            return ;;
+        -o | --depfile | --params | --input | --sweep | --a2l | --fmu)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
-            --column | --time | -D) return ;;
+            --column | --time | --title | --size | -D) return ;;
     esac
     case $current in
         -*)
-            options=$("$command" --help 2>/dev/null | sed -n '/^  /p' | grep -o -e '--*[a-zA-Z][a-z-]*' |
-                grep -x -e '--[a-z][a-z-]*' -e '-[a-zA-Z]' | sort -u)
+            options=$("$command" --help 2>/dev/null | sed -n '/^  /p' | grep -o -e '--*[a-zA-Z][a-z0-9-]*' |
+                grep -x -e '--[a-z][a-z0-9-]*' -e '-[a-zA-Z]' | sort -u)
             mapfile -t COMPREPLY < <(compgen -W "$options" -- "$current") ;;
         *) mapfile -t COMPREPLY < <(compgen -f -X '!*.spec' -- "$current"; compgen -d -- "$current") ;;
     esac

@@ -11,7 +11,7 @@ root=$(cd "$2" && pwd) || exit 99
 . "$root/tests/install/stage.sh"
 
 options_of() {
-	"$1" --help | grep -o -e '--*[a-zA-Z][a-z-]*' | grep -x -e '--[a-z][a-z-]*' -e '-[a-zA-Z]' | sort -u
+	"$1" --help | grep -o -e '--*[a-zA-Z][a-z0-9-]*' | grep -x -e '--[a-z][a-z0-9-]*' -e '-[a-zA-Z]' | sort -u
 }
 
 # ---- bash ----
@@ -39,6 +39,8 @@ if command -v bash >/dev/null 2>&1; then
 	plgen --help | sed -n 's/^  --scheme.*: //p' | tr ' ' '\n' | sort >expected
 	offers plgen --scheme '' | diff expected - >log && [ "$(wc -l <expected)" -gt 10 ]
 	result $? "bash: the $(wc -l <expected) schemes"
+	offers plgen --plot c >found 2>log && [ "$(cat found)" = campbell ]
+	result $? 'bash: a kind of picture'
 	offers plgen --form k >found 2>log
 	[ "$(cat found)" = kick-drift-kick ]
 	result $? 'bash: a form'
@@ -58,6 +60,29 @@ if command -v zsh >/dev/null 2>&1; then
 	result $? 'zsh: the completion can be read'
 else
 	skip 'completion of zsh' 'zsh is not installed'
+fi
+
+if command -v fish >/dev/null 2>&1; then
+	# completes LINE: what is offered behind it, by the file that fish itself finds
+	completes() {
+		LINE=$1 STAGED=$prefix/share/fish/vendor_completions.d HOME=$PWD XDG_CONFIG_HOME=$PWD \
+			XDG_DATA_HOME=$PWD fish -c 'set fish_complete_path $STAGED; complete -C $LINE' 2>>log | cut -f 1 | sort -u
+	}
+	for command in plgen plrun; do
+		: >log
+		options_of $command >expected
+		completes "$command -" | sed '/=$/d' >found
+		diff expected found >>log && [ "$(wc -l <found)" -gt 15 ]
+		result $? "fish: all $(wc -l <expected) options of $command"
+		plgen --help | sed -n 's/^  --scheme.*: //p' | tr ' ' '\n' | sort >expected
+		completes "$command --scheme " | diff expected - >>log && [ "$(wc -l <expected)" -gt 10 ]
+		result $? "fish: the $(wc -l <expected) schemes for $command"
+	done
+	: >log
+	[ "$(completes 'plgen --plot c')" = campbell ] && [ "$(completes 'plgen --explain=j')" = --explain=json ]
+	result $? 'fish: a kind of picture, --explain=json'
+else
+	skip 'completion of fish' 'fish is not installed'
 fi
 
 # ---- editors: the words of the sources ----
