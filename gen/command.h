@@ -22,6 +22,7 @@ struct options {
 	int definitions;
 	const char **definition;        /* NAME=EXPR */
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
+	bool equilibrium;               /* equilibria are listed, as text or JSON */
 	bool campbell;                  /* the picture of --plot, with: */
 	const char *sweep, *orders, *whirl; /* NULL: not given */
 	struct picture_look look;       /* of pictures and of a page */

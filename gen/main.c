@@ -516,10 +516,39 @@ static void find_and_print_campbell(void *context)
 	print_campbell(w->text->to, &c, &o->look, picture_of_file(o->output));
 }
 
-static bool draw_campbell(struct work *w)
+static const struct model *model_at(void *context, const char *place, const char **why)
+{
+	struct many *m = context;
+	const bool again = m->now.model;
+	m->now = *m->first;
+	m->now.options.at = place;
+	*why = again && memory_beyond(0.6) ? "memory is near its limit; --at has them"
+					   : unheard_refusal_of(make_one, m);
+	return m->now.model;
+}
+
+static void find_and_print_equilibria(void *context)
+{
+	struct work *w = context, searched = *w;
+	struct request *request = &searched.options.request;
+	struct many many = { .first = w };
+	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
+	if (!source || !define(&searched))
+		abandon();
+	request->linearise = EQUILIBRIA;
+	request->scheme = request->tolerance = request->modes = NULL;
+	w->model = model_at_place(&searched, source, request);
+	if (!w->model)
+		abandon();
+	w->spec = searched.spec;
+	print_equilibria(w->text->to, w->model, w->options.print == PRINT_JSON, model_at, &many);
+}
+
+/* What looks at many models */
+static bool print_many(struct work *w, void (*print)(void *))
 {
 	w->text = file_new(w->options.output);
-	const bool printed = statement_guard(find_and_print_campbell, w);
+	const bool printed = statement_guard(print, w);
 	file_close(w->text);
 	if (!printed || (w->options.strict && diagnostics_harden()))
 		return false;
@@ -553,8 +582,8 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (w->options.campbell)
-		return draw_campbell(w);
+	if (w->options.campbell || w->options.equilibrium)
+		return print_many(w, w->options.campbell ? find_and_print_campbell : find_and_print_equilibria);
 	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) ||
 	    (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;

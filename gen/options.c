@@ -235,6 +235,8 @@ static const struct row {
 	  .text = AT(amplitude) },
 	{ "at", "rest|t=3|x=0.1,...", "of a nonlinear model: its linear equations at rest, then, or at these states",
 	  .text = AT(at) },
+	{ "equilibrium", NULL, "list equilibria: coordinates, stability, poles (--explain=json: for a program)",
+	  .flag = AT(equilibrium) },
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
 	  .take = take_plot },
 	{ "sweep", "w=0:500[:N]", "of --plot campbell: poles over a param, 61 values; -o also FILE.csv, FILE.json",

@@ -62,6 +62,15 @@ static void check_a2l(const struct options *options)
 		wrong_usage(format("--a2l takes the name of a file, FILE.a2l, found '%s'", options->a2l));
 }
 
+static void check_equilibrium(const struct options *o)
+{
+	const enum print print = o->print;
+	const char *other = o->at ? "--at" : o->output ? "-o" : o->fmu ? "--fmu" : o->bundle ? "--bundle"
+			    : print != PRINT_C && print != PRINT_JSON ? option_of_print(print) : NULL;
+	if (o->equilibrium && other)
+		wrong_usage(format("--equilibrium does not go with %s", other));
+}
+
 static void check_campbell(const struct options *options)
 {
 	const struct { const char *value, *option; } of[] = {
@@ -159,6 +168,7 @@ void find_together(struct options *options)
 {
 	check_print(options);
 	check_a2l(options);
+	check_equilibrium(options);
 	check_campbell(options);
 	check_look(options);
 	check_fmu(options);

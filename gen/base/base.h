@@ -91,6 +91,7 @@ void  memory_open(void);
 void  memory_close(void);
 /* what says that a limit is reached, and ends the program */
 void  memory_on_limit(void (*report)(const char *message));
+bool  memory_beyond(double part);                           /* of LIMIT_BYTES */
 void *allocate(size_t count, size_t size);                 /* zeroed */
 void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */

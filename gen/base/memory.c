@@ -57,6 +57,11 @@ static size_t *size_of(void *block)
 	return (size_t *)block - 1;
 }
 
+bool memory_beyond(double part)
+{
+	return (double)held > part * LIMIT_BYTES;
+}
+
 static size_t kind_of(size_t size)
 {
 	return (size + CELL - 1) / CELL;

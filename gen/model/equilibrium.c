@@ -109,50 +109,60 @@ void slopes_at(struct linearising *l, int count, const struct form *const *form,
 
 /* ---- Newton's method ---- */
 
-/* Of A x = b what pivots above rounding determine; coordinates that may move together stay where they are. */
-static void solve_partly(int n, double *A, double *b, double *x)
+/* The pivot's row, in place `rank`, becomes 1 there, and the column 0 in all others. */
+static void eliminate(int n, int wide, double *A, int rank, int row, int column)
 {
-	int *column = ARRAY(int, n), rank = 0;
+	double *pivot = A + rank * wide;
+	for (int j = 0; j < wide; j++) {
+		const double kept = A[row * wide + j];
+		A[row * wide + j] = pivot[j];
+		pivot[j] = kept;
+	}
+	const double size = pivot[column];
+	for (int j = 0; j < wide; j++)
+		pivot[j] /= size;
+	for (int i = 0; i < n; i++) {
+		const double factor = i == rank ? 0 : A[i * wide + column];
+		for (int j = 0; j < wide && factor != 0; j++)
+			A[i * wide + j] -= factor * pivot[j];
+	}
+}
+
+/* A of n rows and n + 1 columns to 1 in the columns `pivot`, 0 above and below, by pivots above rounding; the last
+ * column takes part. Returns how many. */
+static int echelon_of(int n, double *A, int *pivot)
+{
+	const int wide = n + 1;
+	int rank = 0;
 	double largest = 0;
-	for (int i = 0; i < n * n; i++)
-		largest = fmax(largest, fabs(A[i]));
-	for (int i = 0; i < n; i++)
-		column[i] = i;
+	bool *taken = ARRAY(bool, n);
+	for (int i = 0; i < n * wide; i++)
+		largest = fmax(largest, i % wide < n ? fabs(A[i]) : 0);
 	for (; rank < n; rank++) {
-		int row = rank, best = rank;
+		int row = rank, best = -1;
+		double size = 1e-11 * largest;
 		for (int i = rank; i < n; i++)
-			for (int j = rank; j < n; j++)
-				if (fabs(A[i * n + column[j]]) > fabs(A[row * n + column[best]])) {
+			for (int j = 0; j < n; j++)
+				if (!taken[j] && fabs(A[i * wide + j]) > size) {
+					size = fabs(A[i * wide + j]);
 					row = i;
 					best = j;
 				}
-		if (fabs(A[row * n + column[best]]) <= 1e-11 * largest)
-			break;
-		for (int j = 0; j < n; j++) {
-			const double kept = A[row * n + j];
-			A[row * n + j] = A[rank * n + j];
-			A[rank * n + j] = kept;
-		}
-		const double side = b[row];
-		const int taken = column[best];
-		b[row] = b[rank];
-		b[rank] = side;
-		column[best] = column[rank];
-		column[rank] = taken;
-		for (int i = rank + 1; i < n; i++) {
-			const double factor = A[i * n + taken] / A[rank * n + taken];
-			for (int j = 0; j < n; j++)
-				A[i * n + j] -= factor * A[rank * n + j];
-			b[i] -= factor * b[rank];
-		}
+		if (best < 0)
+			return rank;
+		taken[pivot[rank] = best] = true;
+		eliminate(n, wide, A, rank, row, best);
 	}
+	return rank;
+}
+
+/* Of A x = b what pivots determine; coordinates that may move together stay where they are. b: the last column */
+static void solve_partly(int n, double *A, double *x)
+{
+	int *pivot = ARRAY(int, n), rank = echelon_of(n, A, pivot);
 	memset(x, 0, sizeof *x * (size_t)n);
-	for (int i = rank - 1; i >= 0; i--) {
-		double sum = b[i];
-		for (int j = i + 1; j < rank; j++)
-			sum -= A[i * n + column[j]] * x[column[j]];
-		x[column[i]] = sum / A[i * n + column[i]];
-	}
+	for (int i = 0; i < rank; i++)
+		x[pivot[i]] = A[i * (n + 1) + n];
 }
 
 static double size_of_residuals(const struct linearising *l)
@@ -163,14 +173,14 @@ static double size_of_residuals(const struct linearising *l)
 	return size;
 }
 
-/* Largest of |K x + F| */
-static double left_of(const struct linearising *l, const double *K, const double *x)
+/* Largest of |K x - b| */
+static double left_of(int n, const double *K, const double *x)
 {
 	double largest = 0;
-	for (int i = 0; i < l->n; i++) {
-		double sum = mpq_get_d(l->F[i]);
-		for (int j = 0; j < l->n; j++)
-			sum += K[i * l->n + j] * x[j];
+	for (int i = 0; i < n; i++) {
+		double sum = -K[i * (n + 1) + n];
+		for (int j = 0; j < n; j++)
+			sum += K[i * (n + 1) + j] * x[j];
 		largest = fmax(largest, fabs(sum));
 	}
 	return largest;
@@ -190,21 +200,38 @@ static void fall(struct linearising *l, double *direction)
 	l->fall *= 2;
 }
 
+/* Of the residuals by each coordinate, once for all points */
+static void derive_residuals(struct linearising *l)
+{
+	l->slope = ARRAY(struct form **, l->n);
+	for (int j = 0; j < l->n; j++)
+		l->slope[j] = form_derivatives(&l->b->collector, l->n, l->residual, false, l->fixing[j].coord, 0);
+}
+
+/* K, and -F behind it */
+static double *stiffness_at(struct linearising *l)
+{
+	const int n = l->n;
+	double *K = ARRAY(double, n * (n + 1));
+	struct point *point = point_of(l);
+	RATIONAL slope = ZERO;
+	for (int j = 0; j < n; j++)
+		for (int i = 0; i < n; i++) {
+			value_at(l, point, l->slope[j][i], slope);
+			K[i * (n + 1) + j] = mpq_get_d(slope);
+		}
+	for (int i = 0; i < n; i++)
+		K[i * (n + 1) + n] = -mpq_get_d(l->F[i]);
+	return K;
+}
+
 static void find_direction(struct linearising *l, double *direction)
 {
 	const int n = l->n;
-	double *K = ARRAY(double, n * n), *work = ARRAY(double, n * n), *b = ARRAY(double, n);
-	RATIONALS *slope = rationals((size_t)n);
-	for (int j = 0; j < n; j++) {
-		slopes_at(l, n, l->residual, j, slope);
-		for (int i = 0; i < n; i++)
-			K[i * n + j] = mpq_get_d(slope[i]);
-	}
-	for (int i = 0; i < n; i++)
-		b[i] = -mpq_get_d(l->F[i]);
-	memcpy(work, K, sizeof *K * (size_t)(n * n));
-	solve_partly(n, work, b, direction);
-	if (left_of(l, K, direction) > 1e-6 * size_of_residuals(l))
+	double *K = stiffness_at(l), *work = ARRAY(double, n * (n + 1));
+	memcpy(work, K, sizeof *K * (size_t)(n * (n + 1)));
+	solve_partly(n, work, direction);
+	if (left_of(n, K, direction) > 1e-6 * size_of_residuals(l))
 		fall(l, direction);
 }
 
@@ -255,6 +282,35 @@ static void take_short(struct linearising *l)
 	find_residuals(l);
 }
 
+/* Less `way`, if that is an equilibrium too */
+static bool move_coordinate(struct linearising *l, int coord, mpq_srcptr way)
+{
+	mpq_sub(l->state[coord], l->state[coord], way);
+	find_residuals(l);
+	if (size_of_residuals(l) < 1e-40)
+		return true;
+	mpq_add(l->state[coord], l->state[coord], way);
+	find_residuals(l);
+	return false;
+}
+
+/* To the initial value of what nothing holds, and whole turns towards it, where the equations are the same there */
+static void move_back(struct linearising *l)
+{
+	REAL pi = WITH_BITS(BITS);
+	RATIONAL turns = ZERO, way = ZERO;
+	mpfr_const_pi(pi, MPFR_RNDN);
+	for (int i = 0; i < l->n; i++) {
+		mpq_sub(way, l->state[i], l->b->model->initial[i]);
+		mpq_set_d(turns, 2 * round(mpq_get_d(way) / 6.283185307179586));
+		if (mpq_sgn(way) == 0 || move_coordinate(l, i, way) || mpq_sgn(turns) == 0)
+			continue;
+		mpfr_get_q(way, pi);
+		mpq_mul(way, way, turns);
+		move_coordinate(l, i, way);
+	}
+}
+
 /* Steps are halved while they do not bring the equations closer to 0. */
 void find_equilibrium(struct linearising *l)
 {
@@ -263,6 +319,8 @@ void find_equilibrium(struct linearising *l)
 	for (int i = l->n; i < l->states; i++)
 		mpq_set_ui(l->state[i], 0, 1);
 	find_residuals(l);
+	if (!l->slope)
+		derive_residuals(l);
 	for (int k = 0; k < MOST_ITERATIONS && !is_equilibrium(l); k++) {
 		size = size_of_residuals(l);
 		find_direction(l, direction);
@@ -278,11 +336,108 @@ void find_equilibrium(struct linearising *l)
 		for (move(l, from, direction, part); size_of_residuals(l) > size && part > 1e-6; part /= 2)
 			move(l, from, direction, part / 2);
 	}
-	if (!is_equilibrium(l))
+	if (!is_equilibrium(l)) {
+		move_back(l);
 		take_short(l);
+	}
 	if (!is_equilibrium(l) && !(step <= 1e-55 * scale && scale > 0 && step > 0))
 		error(l->b->spec->name_at, "--at x=0.1 linearises at given values",
 		      "no equilibrium is found from the initial values");
+}
+
+/* ---- all that are found ---- */
+
+/* Of K x = 0, in double: a row for each direction, largest entry 1; returns how many */
+static int directions_without_stiffness(struct linearising *l, double *direction)
+{
+	const int n = l->n;
+	double *K = stiffness_at(l);
+	int *pivot = ARRAY(int, n), rank = echelon_of(n, K, pivot), count = 0;
+	for (int free = 0; free < n; free++) {
+		double *d = direction + count * n, largest = 1;
+		bool is_pivot = false;
+		for (int i = 0; i < rank; i++)
+			is_pivot = is_pivot || pivot[i] == free;
+		if (is_pivot)
+			continue;
+		memset(d, 0, sizeof *d * (size_t)n);
+		d[free] = 1;
+		for (int i = 0; i < rank; i++)
+			largest = fmax(largest, fabs(d[pivot[i]] = -K[i * (n + 1) + free]));
+		for (int j = 0; j < n; j++)
+			d[j] /= largest;
+		count++;
+	}
+	return count;
+}
+
+/* On the straight way between both all are equilibria too: the model is free to move there. */
+static bool is_known(struct linearising *l, const struct equilibrium *other)
+{
+	mpq_t *found = rationals((size_t)l->n);
+	double apart = 0, worst = 0;
+	for (int i = 0; i < l->n; i++) {
+		mpq_set(found[i], l->state[i]);
+		mpq_sub(l->state[i], l->state[i], other->state[i]);
+		apart = fmax(apart, fabs(mpq_get_d(l->state[i])));
+	}
+	for (int part = 1; part < 4; part++) {          /* at 1/4, 1/2, 3/4 */
+		RATIONAL weight = ZERO;
+		mpq_set_ui(weight, (unsigned long)part, 4);
+		for (int i = 0; i < l->n; i++) {
+			mpq_sub(l->state[i], found[i], other->state[i]);
+			mpq_mul(l->state[i], l->state[i], weight);
+			mpq_add(l->state[i], l->state[i], other->state[i]);
+		}
+		find_residuals(l);
+		worst = fmax(worst, size_of_residuals(l));
+	}
+	for (int i = 0; i < l->n; i++)
+		mpq_set(l->state[i], found[i]);
+	return apart < 1e-9 || worst < 1e-9 * l->scale;
+}
+
+/* The k-th of points around the initial values, in a box of a turn: Halton's sequence */
+static void start_at(struct linearising *l, int k)
+{
+	static const int prime[] = { 2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37 };
+	RATIONAL way = ZERO;
+	for (int i = 0; i < l->n; i++) {
+		const int base = prime[i % (int)(sizeof prime / sizeof *prime)];
+		double part = 0, digit = 1;
+		for (int rest = k ? k + i / 12 : 0; rest; rest /= base)
+			part += rest % base * (digit /= base);
+		mpq_set_d(way, k ? 6.283185307179586 * (part - 0.5) : 0);
+		mpq_add(l->state[i], l->b->model->initial[i], way);
+	}
+}
+
+static void find_one(void *context)
+{
+	find_equilibrium(context);
+}
+
+void find_equilibria(struct linearising *l)
+{
+	struct equations *e = &l->b->model->equations;
+	for (int most = l->n < 5 ? 32 : 12; e->starts == 0 || (e->starts < most && !memory_beyond(0.3)); e->starts++) {
+		bool known = false;
+		start_at(l, e->starts);
+		l->fall = 1e-4;
+		find_residuals(l);
+		l->scale = fmax(l->scale, size_of_residuals(l));
+		if (unheard_refusal_of(find_one, l))
+			continue;
+		for (int i = 0; i < e->equilibria && !known; i++)
+			known = is_known(l, &e->equilibrium[i]);
+		if (known)
+			continue;
+		struct equilibrium *found = MORE(e->equilibrium, e->equilibria);
+		*found = (struct equilibrium){ .state = rationals((size_t)l->n), .free = ARRAY(double, l->n * l->n) };
+		for (int i = 0; i < l->n; i++)
+			mpq_set(found->state[i], l->state[i]);
+		found->directions = directions_without_stiffness(l, found->free);
+	}
 }
 
 /* ---- kinks ---- */

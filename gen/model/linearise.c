@@ -15,6 +15,7 @@
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,19 +102,24 @@ static const char *plain_name(const char *name)
 	return text;
 }
 
-static const char *number_text(mpq_srcptr q)
+static const char *decimal_text(mpq_srcptr q, int digits)
 {
 	const char *exact = exact_text(q);
 	if (strlen(exact) <= SHORT)
 		return exact;
-	REAL value = WITH_BITS(BITS);
+	REAL value = WITH_BITS(2 * BITS);
 	char *text;
 	mpfr_set_q(value, q, MPFR_RNDN);
-	if (mpfr_asprintf(&text, "%.40Rg", value) < 0)
+	if (mpfr_asprintf(&text, "%.*Rg", digits, value) < 0)
 		give_up("out of memory");
 	exact = format("%s", text);
 	mpfr_free_str(text);
 	return exact;
+}
+
+static const char *number_text(mpq_srcptr q)
+{
+	return decimal_text(q, 40);
 }
 
 /* 3, (1/3), (-2) */
@@ -183,6 +189,17 @@ static void print_loads(FILE *to, const struct form *form, bool *begun)
 			print_load(to, &form->term[i], begun);
 }
 
+/* What is left where functions of BITS bits cancel: below 1e-60 of the largest slope, and no short number */
+static void drop_noise(int count, mpq_t *slope)
+{
+	double largest = 0;
+	for (int i = 0; i < count; i++)
+		largest = fmax(largest, fabs(mpq_get_d(slope[i])));
+	for (int i = 0; i < count; i++)
+		if (fabs(mpq_get_d(slope[i])) < 1e-60 * largest && strlen(exact_text(slope[i])) > SHORT)
+			mpq_set_ui(slope[i], 0, 1);
+}
+
 /* By all that is fixed but time: [fixing][form] */
 static mpq_t **all_slopes(struct linearising *l, int count, const struct form *const *form)
 {
@@ -190,6 +207,7 @@ static mpq_t **all_slopes(struct linearising *l, int count, const struct form *c
 	for (int f = 0; f < l->fixings - 1; f++) {
 		slope[f] = rationals((size_t)count);
 		slopes_at(l, count, form, f, slope[f]);
+		drop_noise(count, slope[f]);
 	}
 	return slope;
 }
@@ -264,12 +282,12 @@ static bool names_itself(const struct model *model, const char *name)
 	return false;
 }
 
-/* v[1], of a vector that is no coordinate: v_1_ */
+/* v[1], of a vector that is no coordinate, momentum(x): v_1_, momentum_x_ */
 static const char *output_name(const char *name)
 {
 	char *text = format("%s", plain_name(name));
 	for (char *c = text; *c; c++)
-		*c = *c == '[' || *c == ']' ? '_' : *c;
+		*c = strchr("[]()", *c) ? '_' : *c;
 	return text;
 }
 
@@ -449,7 +467,7 @@ static void find_rest(struct linearising *l)
 	l->residual = ARRAY(const struct form *, l->n);
 	for (int i = 0; i < l->n; i++)
 		l->residual[i] = without_loads(residual_as_written(l->b->full, l->b->owner, i));
-	find_equilibrium(l);
+	(strcmp(l->b->request->linearise, EQUILIBRIA) == 0 ? find_equilibria : find_equilibrium)(l);
 	l->residual = solved;
 	c->equation = false;
 	c->keep = (unsigned)keep;
@@ -460,7 +478,7 @@ static bool find_point(struct linearising *l)
 {
 	struct model *model = l->b->model;
 	const char *place = l->b->request->linearise;
-	l->rest = strcmp(place, "rest") == 0;
+	l->rest = strcmp(place, "rest") == 0 || strcmp(place, EQUILIBRIA) == 0;
 	for (int i = 0; i < l->states; i++)
 		mpq_set(l->state[i], model->initial[i]);
 	const int given = l->rest ? 0 : take_values(l, place);
@@ -490,6 +508,18 @@ static void print_spec(FILE *to, struct linearising *l)
 		fprintf(to, "step %s\n", number_text(model->h));
 }
 
+static void spell_places(const struct linearising *l)
+{
+	const struct equations *e = &l->b->model->equations;
+	for (int k = 0; k < e->equilibria; k++) {
+		const char *text = "";
+		for (int i = 0; i < l->n; i++)
+			text = format("%s%s%s=%s", text, i ? "," : "", l->b->model->names.state[i],
+				      decimal_text(e->equilibrium[k].state[i], 80));
+		e->equilibrium[k].place = text;
+	}
+}
+
 void linearise(void *building)
 {
 	struct building *b = building;
@@ -508,6 +538,9 @@ void linearise(void *building)
 	l.F = rationals((size_t)l.n);
 	l.residual = ARRAY(const struct form *, l.n);
 	if (!find_point(&l))
+		return;
+	spell_places(&l);
+	if (strcmp(b->request->linearise, EQUILIBRIA) == 0)
 		return;
 	find_highest(&l);
 	check_kinks(&l);

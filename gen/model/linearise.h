@@ -14,9 +14,11 @@ struct linearising {
 	mpq_t *state;               /* the point */
 	const struct form **residual; /* per row: F */
 	mpq_t *F;
+	struct form ***slope;       /* of the residuals by each coordinate, where an equilibrium is sought */
 	bool rest;                  /* an equilibrium was asked for */
 	bool timed;                 /* loads are as at t; else F is without them */
 	bool looks, varies;         /* slopes are looked at for what depends on time; some does */
+	double scale;               /* largest residual at the starts of a search */
 	double fall;                /* how far it moves where nothing holds it, doubled each time */
 };
 
@@ -31,6 +33,7 @@ void find_residuals(struct linearising *l);                 /* F, where the high
 bool is_equilibrium(const struct linearising *l);           /* F is 0 */
 /* From the point on, without velocities; leaves the statement where none is found */
 void find_equilibrium(struct linearising *l);
+void find_equilibria(struct linearising *l);                /* from many points, into the model's equations */
 /* Highest derivatives at the point, of which outputs may be functions: W^-1 (-F) */
 void find_highest(struct linearising *l);
 /* Slopes a hair beside the point, on both sides of it in each state, have to be those of the point. */

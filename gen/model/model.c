@@ -567,7 +567,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	model->equations.irrationals = b.collector.irrationals;
 	if (!diagnostics_errors() && request->linearise) {
 		silent_guard(find_nonlinear, &b);
-		if (model->nonlinear.terms > 0)
+		if (model->nonlinear.terms > 0 || strcmp(request->linearise, EQUILIBRIA) == 0)
 			statement_guard(linearise, &b);
 	}
 	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||

@@ -21,6 +21,7 @@ struct again {                      /* to build a model a second time, for build
 	bool undivided;             /* regions are those of all coordinates together */
 	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
 };
+#define EQUILIBRIA "all equilibria"
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
 	const char *modes;
@@ -39,7 +40,8 @@ struct request {                    /* what the user asks for on the command lin
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: see `phasors` */
-	const char *linearise;      /* where: rest, t=EXPR, or states and their values; NULL: nowhere */
+	/* where: rest, t=EXPR, or states and their values; EQUILIBRIA: they are searched for; NULL: nowhere */
+	const char *linearise;
 	const char *moved_by;       /* the scheme that brought the states there; NULL: they were given */
 	const char *linearised_at;  /* the point that these linear equations are at; NULL: they are the model's own */
 	bool solution;              /* the closed form is wanted, whatever the scheme */

@@ -49,7 +49,7 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 	fputs("],\n", to);
 }
 
-static void json_pole_list(FILE *to, int count, const struct pole_report *pole)
+void json_pole_list(FILE *to, int count, const struct pole_report *pole)
 {
 	fputs("  \"poles\": [", to);
 	for (int i = 0; i < count; i++) {

@@ -40,22 +40,27 @@ void json_nonlinear(FILE *to, const struct step *step)
 	fputs("],\n", to);
 }
 
-/* By the largest real part of a pole */
-static const char *stability_of(const struct step *step)
+const char *stability_by_poles(int count, const struct pole_report *pole)
 {
-	struct pole_report *pole;
-	const int count = poles_of(step->model, step->written, &pole);
 	int most = -1;
 	for (int i = 0; i < count; i++)
 		most = mpfr_sgn(pole[i].re) > most ? mpfr_sgn(pole[i].re) : most;
 	return most < 0 ? "stable" : most > 0 ? "unstable" : "marginal";
 }
 
+static const char *stability_of_step(const struct step *step)
+{
+	struct pole_report *pole;
+	const int count = poles_of(step->model, step->written, &pole);
+	return stability_by_poles(count, pole);
+}
+
 void text_point(FILE *to, const struct step *step)
 {
 	const char *at = step->shown->model->request.linearised_at;
 	if (at)
-		fprintf(to, "Linear equations of the deviations from %s.\nThey are %s.\n\n", at, stability_of(step));
+		fprintf(to, "Linear equations of the deviations from %s.\nThey are %s.\n\n", at,
+			stability_of_step(step));
 }
 
 void json_point(FILE *to, const struct step *step)
@@ -63,7 +68,7 @@ void json_point(FILE *to, const struct step *step)
 	const char *at = step->shown->model->request.linearised_at;
 	if (at)
 		fprintf(to, "  \"linearised\": {\"at\": \"%s\", \"stability\": \"%s\"},\n", json_text(at),
-			stability_of(step));
+			stability_of_step(step));
 }
 
 void need_linear(const struct step *step, const char *what)

@@ -32,6 +32,7 @@ const char *json_text(const char *name);                    /* a file's name, as
 const char *json_number(double value);                      /* null where it is not finite, which JSON cannot say */
 void json_numbers(FILE *to, int count, const double *value); /* [1, 2] */
 void json_names(FILE *to, const char *key, int count, const char *const *name); /* a member: identifiers with primes */
+void json_pole_list(FILE *to, int count, const struct pole_report *pole); /* a member, "poles" */
 /* A member, row by row in lines of their own; of rows of a wider matrix, `stride` entries apart */
 void json_matrix(FILE *to, const char *indent, const char *key, int rows, int columns, int stride, const double *value);
 void json_rationals(FILE *to, const char *indent, const char *key, int rows, int columns, const mpq_t *value);
@@ -51,9 +52,16 @@ void json_units(FILE *to, const struct step *step);          /* a member of an o
 bool is_nonlinear(const struct step *step);
 void text_nonlinear(FILE *to, const struct step *step);     /* what is not told of it, and why */
 void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
+const char *stability_by_poles(int count, const struct pole_report *pole); /* by the largest real part */
 void text_point(FILE *to, const struct step *step);         /* where they were linearised, where they were */
 void json_point(FILE *to, const struct step *step);         /* a member of an object, or nothing */
 void need_linear(const struct step *step, const char *what); /* "poles"; leaves the statement where it is not linear */
+
+/* ---- equilibria.c: those that were found, and their linear equations ---- */
+
+/* `linear`: the linear equations at such a place, *why NULL; else why there are none */
+void print_equilibria(FILE *to, const struct model *model, bool json,
+		      const struct model *(*linear)(void *context, const char *place, const char **why), void *context);
 
 /* ---- reach.c: what a series costs, and how far it reaches ---- */
 

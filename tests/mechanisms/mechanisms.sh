@@ -115,4 +115,28 @@ for start in 0.1 3; do
 	esac
 	result $? "the poles of a cart and pole at rest near th = $start"
 done
+# Two pendulums of mass and length 1: w^2 l/g is 2 -+ sqrt(2) where both hang or stand, and +-sqrt(2) between
+sed -e 's/^init q = .*/init q = [0.2; 0.1]/' "$cases/pair_energies.spec" >two.spec
+"$PLGEN" --equilibrium two.spec >log 2>&1 && awk '/^[0-9]+:/ { kind = $0 ~ /3.14159/; both = $0 ~ /3.14159.*3.14159/ }
+	/^    [-0-9]/ { p = $1 ~ /^-?0$/ ? -$3*$3 : $1*$1; r = p/9.81; n++
+		root = sqrt(2)
+		good += !kind && (near(r, root - 2) || near(r, -root - 2)) ||
+			both && (near(r, 2 - root) || near(r, 2 + root)) ||
+			kind && !both && (near(r, root) || near(r, -root)) }
+	function near(a, b) { return (a - b)^2 < 1e-12 }
+	END { print n " poles, " good " of them as by hand"; exit !(n == 12 && good == n) }' log >>log
+result $? 'the equilibria of two pendulums, and their poles'
+"$PLGEN" --equilibrium --explain=json "$cases/cart_and_pole.spec" 2>&1 | tr -d ' \n' >log
+grep -q '"at":{"x":0,"th":0},"stability":"unstable","free":\["x"\]' log &&
+	grep -q '"at":{"x":0,"th":3.1415926535897931},"stability":"marginal","free":\["x"\]' log
+result $? 'equilibria for a program: a cart is free to move'
+# What falls has none
+cat >falls.spec <<'SPEC'
+model falls
+coord x
+energy T = x'^2/2, V = x
+step 0.01
+SPEC
+! "$PLGEN" --equilibrium falls.spec >log 2>&1 && grep -q 'no equilibrium is found from' log
+result $? 'no equilibrium of what falls'
 tap_end

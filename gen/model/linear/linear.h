@@ -41,6 +41,12 @@ struct linear {                     /* M q'' + C q' + K q = force - heldC q'(t_n
 	int force_columns;          /* of the remainder: one for each equation that has some */
 	mpq_t **force_column;       /* its force on the equations */
 };
+struct equilibrium {
+	mpq_t *state;               /* its coordinates */
+	const char *place;          /* as --at takes it */
+	int directions;             /* along which nothing holds it: rows over the coordinates, largest entry 1 */
+	double *free;
+};
 struct equations {                  /* as they are written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
 	struct segment_equations *segment_equations; /* per segment */
@@ -52,6 +58,8 @@ struct equations {                  /* as they are written */
 	const struct node *moving_mass; /* a term by which the mass matrix is not constant; NULL: it is */
 	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
 	const char *linearised, *point;
+	int starts, equilibria;     /* where they were searched for: from so many points, so many were found */
+	struct equilibrium *equilibrium;
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;
