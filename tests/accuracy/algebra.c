@@ -34,6 +34,49 @@ bool eliminate(size_t rows, size_t width, mpq_t *W)
     return true;
 }
 
+/* What stands on the right of the highest derivative of row i */
+static void fill_right(const struct linear *system, const mpq_t *K, const mpq_t *C, size_t i, int segment,
+                       mpq_t *right)
+{
+    const size_t n = (size_t)system->n;
+    for (size_t j = 0; j < n; j++) {
+        mpq_set(right[j], K[i * n + j]);
+        if (system->velocity[j] >= 0)
+            mpq_set(right[system->velocity[j]], C[i * n + j]);
+    }
+    right += system->states;
+    for (int l = 0; l < system->loads; l++)
+        for (int k = 0; k < system->load[l].columns; k++)
+            mpq_set(*right++, system->load[l].force[k][(size_t)segment * n + i]);
+    for (int u = 0; u < system->inputs; u++)
+        for (int k = 0; k < 2; k++)
+            mpq_set(*right++, system->input[u].force[k][i]);
+}
+
+mpq_t *highest_rows(const struct linear *system, const mpq_t *K, const mpq_t *C, int segment, int forces,
+                    const int *row, size_t *width)
+{
+    const size_t n = (size_t)system->n;
+    const size_t own = (size_t)system->states + (size_t)load_columns(system) + 2 * (size_t)system->inputs;
+    const size_t all = own + (size_t)forces;
+    mpq_t *W = rationals(n * (n + all)), *R = rationals(n * all);
+    for (size_t i = 0; i < n; i++) {
+        mpq_t *left = W + i * (n + all);
+        for (size_t j = 0; j < n; j++)
+            mpq_set(left[j], system->velocity[j] < 0 ? system->C[i * n + j] : system->M[i * n + j]);
+        fill_right(system, K, C, i, segment, left + n);
+        for (int e = 0; e < forces; e++)
+            mpq_set_ui(left[n + own + (size_t)e], (size_t)row[e] == i, 1);
+    }
+    if (!eliminate(n, n + all, W))
+        return NULL;
+    for (size_t i = 0; i < n; i++)
+        for (size_t j = 0; j < all; j++)
+            mpq_set(R[i * all + j], W[i * (n + all) + n + j]);
+    *width = all;
+    return R;
+}
+
 void fill_load_states(const struct load *load, size_t size, mpq_t *A)
 {
     const bool turns = mpq_sgn(load->forcing->w) != 0;

@@ -12,6 +12,12 @@ struct load;
 void add_product(mpq_ptr sum, mpq_srcptr a, mpq_srcptr b, bool subtract);   /* sum +- a b */
 bool eliminate(size_t rows, size_t width, mpq_t *W); /* its left square part made the identity; false: it is singular */
 
+/* The highest derivative of each coordinate as a row: over the states, without sign, by the operator K, C; the load
+ * columns of a segment; u and u' of every input; `forces` columns, each a force on its row. A coordinate of first order
+ * is solved for its derivative, whose factor stands in the system's C and is no part of an operator. NULL: singular */
+mpq_t *highest_rows(const struct linear *system, const mpq_t *K, const mpq_t *C, int segment, int forces,
+                    const int *row, size_t *width);
+
 /* z = t^k e^{at} cos(wt+p) and sin, or t^k e^{at} alone, into A (size a row): z' = a z + k (z of k - 1) -+ w (its
  * partner) */
 void fill_load_states(const struct load *load, size_t size, mpq_t *A);

@@ -4,40 +4,6 @@
 
 /* ---- the augmented matrix ---- */
 
-/* The highest derivative of each coordinate as a row: over the states (without sign), the load columns of one segment,
- * u and u' of every input.  Columns of M multiply accelerations; of a coordinate of first order the column of C
- * multiplies what is solved for. */
-static mpq_t *highest_rows(const struct linear *system, int segment, size_t *width)
-{
-    const size_t n = (size_t)system->n, states = (size_t)system->states;
-    const size_t all = states + (size_t)load_columns(system) + 2 * (size_t)system->inputs;
-    mpq_t *W = rationals(n * (n + all)), *R = rationals(n * all);
-    for (size_t i = 0; i < n; i++) {
-        mpq_t *row = W + i * (n + all), *right = row + n;
-        for (size_t j = 0; j < n; j++) {
-            const int velocity = system->velocity[j];
-            mpq_set(row[j], velocity < 0 ? system->C[i * n + j] : system->M[i * n + j]);
-            mpq_set(right[j], system->K[i * n + j]);
-            if (velocity >= 0)
-                mpq_set(right[velocity], system->C[i * n + j]);
-        }
-        right += states;
-        for (int l = 0; l < system->loads; l++)
-            for (int k = 0; k < system->load[l].columns; k++)
-                mpq_set(*right++, system->load[l].force[k][(size_t)segment * n + i]);
-        for (int u = 0; u < system->inputs; u++)
-            for (int k = 0; k < 2; k++)
-                mpq_set(*right++, system->input[u].force[k][i]);
-    }
-    if (!eliminate(n, n + all, W))
-        complain("masses", "the matrix of highest derivatives is singular");
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < all; j++)
-            mpq_set(R[i * all + j], W[i * (n + all) + n + j]);
-    *width = all;
-    return R;
-}
-
 static size_t input_states(const struct linear *system)
 {
     size_t count = 0;
@@ -66,8 +32,10 @@ static void fill_dynamics(const struct linear *system, int segment, bool pl, con
 {
     const size_t n = (size_t)system->n, states = a->states;
     size_t width;
-    mpq_t *R = highest_rows(system, segment, &width);
-    for (size_t i = 0; i < n; i++) {
+    mpq_t *R = highest_rows(system, system->K, system->C, segment, 0, NULL, &width);
+    if (!R)
+        complain("masses", "the matrix of highest derivatives is singular");
+    for (size_t i = 0; R && i < n; i++) {
         const bool second = system->velocity[i] >= 0;
         mpq_t *row = a->A + (second ? (size_t)system->velocity[i] : i) * a->size;
         const mpq_t *right = (const mpq_t *)R + i * width;

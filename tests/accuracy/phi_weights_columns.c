@@ -4,47 +4,6 @@
 
 /* ---- the plant: one operator in one segment of time, as x' = A x ---- */
 
-/* The highest derivative of each coordinate: over the states, without sign, the load columns, u and u' of every input,
- * the channels. A coordinate of first order is solved for its derivative, whose factor stands in C and is no part of an
- * operator. */
-static mpq_t *highest_rows(const struct model *model, int which, int segment, size_t *width)
-{
-    const struct linear *system = &model->system;
-    const struct operator *operator = &model->schedule.operator[which];
-    const size_t n = (size_t)system->n, states = (size_t)system->states;
-    const size_t all = states + (size_t)load_columns(system) + 2 * (size_t)system->inputs +
-		       (size_t)model->remainder.force_columns;
-    mpq_t *W = rationals(n * (n + all)), *R = rationals(n * all);
-    for (size_t i = 0; i < n; i++) {
-        mpq_t *right = W + i * (n + all) + n;
-        for (size_t j = 0; j < n; j++) {
-            const int velocity = system->velocity[j];
-            mpq_set(W[i * (n + all) + j], velocity < 0 ? system->C[i * n + j] : system->M[i * n + j]);
-            mpq_set(right[j], operator->K[i * n + j]);
-            if (velocity >= 0)
-                mpq_set(right[velocity], operator->C[i * n + j]);
-        }
-        right += states;
-        for (int l = 0; l < system->loads; l++)
-            for (int k = 0; k < system->load[l].columns; k++)
-                mpq_set(*right++, system->load[l].force[k][(size_t)segment * n + i]);
-        for (int u = 0; u < system->inputs; u++)
-            for (int k = 0; k < 2; k++)
-                mpq_set(*right++, system->input[u].force[k][i]);
-        for (int e = 0; e < model->remainder.force_columns; e++)
-            mpq_set_ui(*right++, (size_t)model->remainder.row[e] == i, 1);
-    }
-    if (!eliminate(n, n + all, W)) {
-        complain("", "the matrix of highest derivatives is singular");
-        return NULL;
-    }
-    for (size_t i = 0; i < n; i++)
-        for (size_t j = 0; j < all; j++)
-            mpq_set(R[i * all + j], W[i * (n + all) + n + j]);
-    *width = all;
-    return R;
-}
-
 static void fill_row(const struct model *model, const struct plant *p, size_t i, const mpq_t *right)
 {
     const struct linear *system = &model->system;
@@ -83,9 +42,13 @@ bool make_plant(struct plant *p, const struct model *model, int which, int segme
     p->size = p->force_column_at + 3 * p->force_columns;
     p->A = rationals(p->size * p->size);
     p->B = rationals(p->force_columns * p->size);
-    const mpq_t *R = (const mpq_t *)highest_rows(model, which, segment, &width);
-    if (!R)
+    const struct operator *operator = &model->schedule.operator[which];
+    const mpq_t *R = (const mpq_t *)highest_rows(system, operator->K, operator->C, segment,
+                                                 model->remainder.force_columns, model->remainder.row, &width);
+    if (!R) {
+        complain("", "the matrix of highest derivatives is singular");
         return false;
+    }
     for (size_t i = 0; i < (size_t)system->n; i++)
         fill_row(model, p, i, R + i * width);
     for (size_t at = p->load_at, l = 0; l < (size_t)system->loads; at += (size_t)system->load[l++].columns)

@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+uint64_t state;
+
 enum { ROOM = 1 << 20 };
 
 struct text {
@@ -15,7 +17,7 @@ struct text {
 	size_t length;
 };
 
-static size_t below(size_t n)
+static size_t index_below(size_t n)
 {
 	return n ? (size_t)(next() % n) : 0;
 }
@@ -51,7 +53,7 @@ static int is_word(char c)
 /* A token around a random place: a word with its primes, or one other byte. */
 static size_t token(const struct text *text, size_t *at)
 {
-	size_t from = *at = below(text->length), until;
+	size_t from = *at = index_below(text->length), until;
 	if (text->length == 0)
 		return 0;
 	while (from > 0 && is_word(text->byte[from]) && is_word(text->byte[from - 1]))
@@ -67,7 +69,7 @@ static size_t token(const struct text *text, size_t *at)
 /* The line around a random place, its end included. */
 static size_t line(const struct text *text, size_t *at)
 {
-	size_t from = *at = below(text->length), until;
+	size_t from = *at = index_below(text->length), until;
 	while (from > 0 && text->byte[from - 1] != '\n')
 		from--;
 	for (until = from; until < text->length && text->byte[until] != '\n';)
@@ -79,15 +81,15 @@ static size_t line(const struct text *text, size_t *at)
 static void flip_byte(struct text *text)
 {
 	if (text->length)
-		text->byte[below(text->length)] ^= (char)(1 << below(8));
+		text->byte[index_below(text->length)] ^= (char)(1 << index_below(8));
 }
 
 static void set_byte(struct text *text)
 {
 	static const char likely[] = "()[]{};,=+-*/^<>?:'\"#.\n\t 0123456789etx_!\\\r\0\xff\xc3";
-	char byte = likely[below(sizeof likely)];
-	size_t at = below(text->length + 1);
-	replace(text, at, at < text->length && below(2), &byte, 1);
+	char byte = likely[index_below(sizeof likely)];
+	size_t at = index_below(text->length + 1);
+	replace(text, at, at < text->length && index_below(2), &byte, 1);
 }
 
 static void remove_token(struct text *text)
@@ -109,7 +111,7 @@ static void double_token(struct text *text)
 /* A token of this or another spec in the place of a token of this one. */
 static void splice_token(struct text *text, const struct text *other)
 {
-	const struct text *from = below(2) ? other : text;
+	const struct text *from = index_below(2) ? other : text;
 	size_t at, there, length = token(text, &at), taken = token(from, &there);
 	char *copy = malloc(taken + 1);
 	memcpy(copy, from->byte + there, taken);
@@ -244,7 +246,7 @@ static void insert_word(struct text *text)
                                         "\r\n",
                                         "\xef\xbb\xbf",
                                         "\xcf\x89" };
-    size_t at, choice = below(sizeof word / sizeof *word);
+    size_t at, choice = index_below(sizeof word / sizeof *word);
     token(text, &at);
     replace(text, at, 0, word[choice], strlen(word[choice]));
 }
@@ -344,7 +346,7 @@ static void insert_statement(struct text *text)
         "let p = x^2\nlet r = p^2 + sin(p)\n",
         "force -x1^3 on x1\n"
     };
-    size_t at, choice = below(sizeof statement / sizeof *statement);
+    size_t at, choice = index_below(sizeof statement / sizeof *statement);
     line(text, &at);
     replace(text, at, 0, statement[choice], strlen(statement[choice]));
 }
@@ -358,7 +360,7 @@ static void remove_line(struct text *text)
 /* A line of this or another spec at the start of a line of this one. */
 static void splice_line(struct text *text, const struct text *other)
 {
-	const struct text *from = below(2) ? other : text;
+	const struct text *from = index_below(2) ? other : text;
 	size_t at, there, taken = line(from, &there);
 	char *copy = malloc(taken + 1);
 	memcpy(copy, from->byte + there, taken);
@@ -396,7 +398,7 @@ static void blow_number(struct text *text)
                                           "4503599627370497",
                                           "2147483648",
                                           "18446744073709551616" };
-    size_t choice = below(sizeof number / sizeof *number);
+    size_t choice = index_below(sizeof number / sizeof *number);
     for (int tries = 0; tries < 50; tries++) {
         size_t at, length = token(text, &at);
         if (length && text->byte[at] >= '0' && text->byte[at] <= '9') {
@@ -408,7 +410,7 @@ static void blow_number(struct text *text)
 
 static void cut(struct text *text)
 {
-	text->length = below(text->length + 1);
+	text->length = index_below(text->length + 1);
 }
 
 /* One byte many times. */
@@ -416,14 +418,14 @@ static void repeat_byte(struct text *text)
 {
 	static const char likely[] = "(-[)^1x \n'?";
 	char many[2000];
-	size_t length = below(6) ? below(40) : below(sizeof many);
-	memset(many, likely[below(sizeof likely - 1)], sizeof many);
-	replace(text, below(text->length + 1), 0, many, length);
+	size_t length = index_below(6) ? index_below(40) : index_below(sizeof many);
+	memset(many, likely[index_below(sizeof likely - 1)], sizeof many);
+	replace(text, index_below(text->length + 1), 0, many, length);
 }
 
 static void mutate(struct text *text, const struct text *other)
 {
-	switch (below(20)) {
+	switch (index_below(20)) {
 	case 0: flip_byte(text); break;
 	case 1: set_byte(text); break;
 	case 2: remove_token(text); break;
@@ -435,7 +437,7 @@ static void mutate(struct text *text, const struct text *other)
 	case 12: case 13: case 14: blow_number(text); break;
 	case 15: case 16: case 17: case 18: insert_statement(text); break;
 	default:
-		if (below(4))
+		if (index_below(4))
 			repeat_byte(text);
 		else
 			cut(text);
@@ -453,9 +455,10 @@ int main(int argc, char **argv)
 	}
 	size_t good = (size_t)split - 2, bad = (size_t)(argc - split) - 1;
 	state = strtoull(argv[1], NULL, 10) * UINT64_C(0x2545f4914f6cdd1d);
-	struct text text = read_text(below(4) ? argv[2 + below(good)] : argv[split + 1 + below(bad)]);
-	struct text other = read_text(below(2) ? argv[2 + below(good)] : argv[split + 1 + below(bad)]);
-	for (size_t count = 1 + below(5); count > 0; count--)
+	struct text text = read_text(index_below(4) ? argv[2 + index_below(good)] : argv[split + 1 + index_below(bad)]);
+	struct text other = read_text(index_below(2) ? argv[2 + index_below(good)]
+				      : argv[split + 1 + index_below(bad)]);
+	for (size_t count = 1 + index_below(5); count > 0; count--)
 		mutate(&text, &other);
 	size_t written = fwrite(text.byte, 1, text.length, stdout);
 	free(other.byte);

@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+uint64_t state;
+
 enum { ROOM = 1 << 14 };
 
 static char body[ROOM], lets[ROOM], head[ROOM], declared[ROOM], outputs[ROOM], options[ROOM], equation[4][ROOM],
@@ -28,16 +30,6 @@ __attribute__((format(printf, 2, 3))) static void put(char *to, const char *form
 	va_end(arguments);
 	if (length < 0 || (size_t)length >= ROOM - used)
 		exit(3);
-}
-
-static int below(int n)
-{
-	return (int)(next() % (uint64_t)n);
-}
-
-static bool chance(int percent)
-{
-	return below(100) < percent;
 }
 
 static double between(double low, double high)
