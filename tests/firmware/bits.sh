@@ -5,6 +5,7 @@
 #     bits.sh BOARD VARIANTS_double.c VARIANTS_float.c HOST_PROGRAM RUNTIME.a SOURCE_ROOT STEPS
 #
 # RUNTIME.a is that of the board: archive.sh. LONG=1 in the environment: what is emitted is optimised as firmware is.
+# CASE=TEXT: only variants with this text in their name.
 set -u
 name=$1
 double=$2
@@ -37,7 +38,7 @@ compile "$double" double
 compile "$float" float -DREAL_FLOAT
 compile "$firmware/steps.c" steps_double
 compile "$firmware/steps.c" steps_float -DREAL_FLOAT
-compile "$firmware/steps_main.c" main "-DSTEPS=$7"
+compile "$firmware/steps_main.c" main "-DSTEPS=$7" "-DWANTED=\"${CASE:-}\""
 for f in start semihosting digits; do compile "$firmware/$f.c" $f; done
 link "$work/image.elf" "$work"/*.o "$runtime" || exit 99
 

@@ -13,7 +13,8 @@ void stop(int status);
 void put_bits(uint64_t bits, int digits);
 void put_count(uint32_t n);
 
-/* steps.c: that many steps of every variant */
+/* steps.c: that many steps of every variant whose name has the text `wanted` (steps_main.c) */
+extern const char *wanted;
 void steps_double(uint32_t last);
 void steps_float(uint32_t last);
 

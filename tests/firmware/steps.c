@@ -118,6 +118,19 @@ static void refuse(const struct variant *v)
             stop(4);
 }
 
+/* strstr, which on a small board would take too much room */
+static int has_text(const char *name, const char *text)
+{
+    for (; *name; name++) {
+        int i = 0;
+        while (text[i] && text[i] == name[i])
+            i++;
+        if (!text[i])
+            return 1;
+    }
+    return 0;
+}
+
 void OF_REAL(steps)(uint32_t last)
 {
     static uint64_t state[256];
@@ -127,6 +140,8 @@ void OF_REAL(steps)(uint32_t last)
         uint32_t k = 0, next = 1;
         real x[16];
         int number = 0;
+        if (!has_text(m->name, wanted))
+            continue;
         if (m->size > sizeof state || m->states > 16 || m->outputs > 16 || m->inputs > 4)
             stop(3);
         if (v->tuning && (v->tuning->size > sizeof coeffs || m->params != PARAMS))

@@ -3,6 +3,7 @@
 
 #ifdef STEPS /* a board */
 
+const char *wanted = WANTED;
 extern uint32_t bss_end[], stack_top[]; /* from the linker script */
 
 enum { PAINTED = 16384 };
@@ -32,10 +33,14 @@ int main(void)
 
 #include <stdlib.h>
 
+const char *wanted = "";
+
 int main(int argc, char **argv)
 {
     if (argc != 2)
         return 3;
+    if (getenv("CASE"))
+        wanted = getenv("CASE");
     steps_double((uint32_t)strtoul(argv[1], 0, 10));
     steps_float((uint32_t)strtoul(argv[1], 0, 10));
     return 0;
