@@ -16,6 +16,7 @@ struct atoms {
 	int forms, count;
 	struct shared *form[BUCKETS];
 	struct atom *atom[BUCKETS];
+	struct { int count; const struct form **given, **operand; } system; /* the last that was asked for */
 };
 
 struct atoms *atoms_new(void)
@@ -121,6 +122,8 @@ static bool same_atom(const struct atom *a, const struct atom *b)
 	if (a->kind != b->kind || a->function != b->function || a->comparison != b->comparison ||
 	    a->operands != b->operands || a->param != b->param || a->component != b->component)
 		return false;
+	if (a->operand == b->operand && a->exponent == b->exponent)
+		return true;
 	for (int i = 0; i < a->operands; i++)
 		if (a->operand[i] != b->operand[i] || (a->exponent && a->exponent[i] != b->exponent[i]))
 			return false;
@@ -129,8 +132,9 @@ static bool same_atom(const struct atom *a, const struct atom *b)
 
 static struct form *form_of_atom(struct collector *c, const struct node *node, struct atom wanted)
 {
+	enum { HASHED = 64 };           /* operands: the first of them tell most atoms apart */
 	size_t hash = (size_t)wanted.kind * 64 + wanted.function + (size_t)wanted.component * 1024;
-	for (int i = 0; i < wanted.operands; i++)
+	for (int i = 0; i < wanted.operands && i < HASHED; i++)
 		hash = mix(hash, form_hash(wanted.operand[i]) + (wanted.exponent ? wanted.exponent[i] : 0));
 	struct atom **link = &c->atoms->atom[(hash >> 20) % BUCKETS];
 	while (*link && !same_atom(*link, &wanted))
@@ -151,20 +155,37 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = (*link)->index, .atom = *link });
 }
 
+static const struct form **shared(struct collector *c, int count, const struct form *const *operand)
+{
+	const struct form **list = ARRAY(const struct form *, count);
+	for (int i = 0; i < count; i++)
+		list[i] = share(c, operand[i])->form;
+	return list;
+}
+
 static struct form *new_atom(struct collector *c, const struct node *node, struct atom wanted, int count,
 			     const struct form *const *operand)
 {
 	wanted.operands = count;
-	wanted.operand = ARRAY(const struct form *, count);
-	for (int i = 0; i < count; i++)
-		wanted.operand[i] = share(c, operand[i])->form;
+	wanted.operand = shared(c, count, operand);
 	return form_of_atom(c, node, wanted);
 }
 
-struct form *kept_operands(struct collector *c, const struct node *node, struct atom wanted, int count,
-			   const struct form *const *operand)
+/* One after the other are asked for all components of a system, whose n (n + 1) operands they share. */
+struct form *kept_component(struct collector *c, const struct node *node, struct atom wanted, int count,
+			    const struct form *const *operand)
 {
-	return new_atom(c, node, wanted, count, operand);
+	struct atoms *atoms = c->atoms;
+	const size_t size = (size_t)count * sizeof *operand;
+	if (atoms->system.count != count || memcmp(atoms->system.given, operand, size) != 0) {
+		ENLARGE(atoms->system.given, (size_t)count);
+		memcpy(atoms->system.given, operand, size);
+		atoms->system.count = count;
+		atoms->system.operand = shared(c, count, operand);
+	}
+	wanted.operands = count;
+	wanted.operand = atoms->system.operand;
+	return form_of_atom(c, node, wanted);
 }
 
 struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param)

@@ -187,9 +187,9 @@ struct form *kept_call(struct collector *c, const struct node *node, enum functi
 		       struct form *const *x);
 struct form *kept_comparison(struct collector *c, const struct node *node, enum comparison comparison,
 			     const struct form *a, const struct form *b);
-/* Of any other kind, as it is */
-struct form *kept_operands(struct collector *c, const struct node *node, struct atom wanted, int count,
-			   const struct form *const *operand);
+/* A component of a linear system */
+struct form *kept_component(struct collector *c, const struct node *node, struct atom wanted, int count,
+			    const struct form *const *operand);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b);
 /* A node that calls a function where another one stands: for messages, which show the place */

@@ -64,7 +64,7 @@ static struct form *constant_solution(struct collector *c, const struct node *no
 struct form *kept_solution(struct collector *c, const struct node *node, const struct linear_system *e, int component)
 {
 	const int n = e->n, cells = n * n;
-	const struct form **operand = ARRAY(const struct form *, cells + n);
+	SCRATCH const struct form **operand = ARRAY(const struct form *, cells + n);
 	bool zero = true;
 	for (int i = 0; i < n; i++)
 		zero = zero && e->f[i]->terms == 0;
@@ -78,14 +78,16 @@ struct form *kept_solution(struct collector *c, const struct node *node, const s
 		operand[i] = e->f[i];
 	for (int i = 0; i < cells; i++)
 		operand[n + i] = e->M[i];
-	return kept_operands(c, node,
-			     (struct atom){ .kind = ATOM_SOLUTION, .component = component, .written = e->written },
-			     cells + n, operand);
+	return kept_component(c, node,
+			      (struct atom){ .kind = ATOM_SOLUTION, .component = component, .written = e->written },
+			      cells + n, operand);
 }
 
 bool same_solution(const struct atom *a, const struct atom *b)
 {
 	bool same = a->operands == b->operands;
+	if (a->operand == b->operand)
+		return true;
 	for (int i = 0; i < a->operands && same; i++)
 		same = a->operand[i] == b->operand[i];
 	return same;

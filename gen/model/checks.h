@@ -40,6 +40,9 @@ struct jacobian {
 void jacobian_forms(void *jacobian);                        /* C, K and what `at` has of the system */
 /* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
 void jacobian_evaluate(void *jacobian);
+void constant_of(struct collector *c, const struct form *form, mpq_ptr value); /* 0 where inputs are in it */
+void jacobian_of_rows(struct jacobian *j, const struct form *const *row);     /* of other residuals */
+void jacobian_at(struct jacobian *j, struct point *point);
 int  jacobian_point(const struct jacobian *j, struct fixing *fixing); /* states + 1, which it fixes */
 /* [1/s^2] of the coordinates' stiffness alone, eigenvalues of W^-1 K, rising; false: not found */
 bool squared_frequencies(const struct linear *system, double *value);

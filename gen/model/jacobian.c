@@ -7,26 +7,27 @@
 #include <math.h>
 #include <stdlib.h>
 
-static struct form **columns(struct building *b, int coord, int order)
+void jacobian_of_rows(struct jacobian *j, const struct form *const *row)
 {
-	const struct form **row = ARRAY(const struct form *, b->model->n);
-	for (int i = 0; i < b->model->n; i++)
-		row[i] = b->full->residual[i].form;
-	return form_derivatives(&b->collector, b->model->n, row, false, coord, order);
+	struct collector *c = &j->b->collector;
+	const struct model *model = j->b->model;
+	j->C = ARRAY(struct form **, model->n);
+	j->K = ARRAY(struct form **, model->n);
+	for (int k = 0; k < model->n; k++) {
+		j->C[k] = form_derivatives(c, model->n, row, false, k, 1);
+		j->K[k] = form_derivatives(c, model->n, row, false, k, 0);
+	}
+	j->at = linear_like(&model->system);
+	j->at.M = model->system.M;
 }
 
 void jacobian_forms(void *context)
 {
 	struct jacobian *j = context;
-	const struct model *model = j->b->model;
-	j->C = ARRAY(struct form **, model->n);
-	j->K = ARRAY(struct form **, model->n);
-	for (int k = 0; k < model->n; k++) {
-		j->C[k] = columns(j->b, k, 1);
-		j->K[k] = columns(j->b, k, 0);
-	}
-	j->at = linear_like(&model->system);
-	j->at.M = model->system.M;
+	const struct form **row = ARRAY(const struct form *, j->b->model->n);
+	for (int i = 0; i < j->b->model->n; i++)
+		row[i] = j->b->full->residual[i].form;
+	jacobian_of_rows(j, row);
 }
 
 int jacobian_point(const struct jacobian *j, struct fixing *fixing)
@@ -45,21 +46,18 @@ int jacobian_point(const struct jacobian *j, struct fixing *fixing)
 	return model->system.states + 1;
 }
 
-static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
+void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
 {
 	mpq_set_ui(value, 0, 1);
 	if (is_constant(form))                  /* what still depends on inputs is left out */
 		constant_value(c, form, value);
 }
 
-void jacobian_evaluate(void *context)
+void jacobian_at(struct jacobian *j, struct point *point)
 {
-	struct jacobian *j = context;
 	const struct model *model = j->b->model;
 	struct collector *c = &j->b->collector;
 	int n = model->n;
-	struct fixing *fixing = ARRAY(struct fixing, model->system.states + 1);
-	struct point *point = point_new(c, jacobian_point(j, fixing), fixing);
 	point_at_values(point);
 	for (int k = 0; k < n; k++)
 		for (int i = 0; i < n; i++) {
@@ -68,6 +66,13 @@ void jacobian_evaluate(void *context)
 				constant_of(c, form_at(point, j->C[k][i]), j->at.C[i * n + k]);
 			constant_of(c, form_at(point, j->K[k][i]), j->at.K[i * n + k]);
 		}
+}
+
+void jacobian_evaluate(void *context)
+{
+	struct jacobian *j = context;
+	struct fixing *fixing = ARRAY(struct fixing, j->b->model->system.states + 1);
+	jacobian_at(j, point_new(&j->b->collector, jacobian_point(j, fixing), fixing));
 }
 
 /* ---- eigenvalues ---- */

@@ -372,7 +372,11 @@ static bool is_stiff(struct building *b)
 	struct model *model = b->model;
 	struct jacobian j = { .b = b, .damped = true, .state = model->initial };
 	mpq_init(j.t);
-	bool known = silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);
+	const bool moves = b->full->masses > 0, equation = b->collector.equation;
+	b->collector.equation = moves;
+	bool known = moves ? silent_guard(jacobian_of_motion, &j)
+			   : silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);
+	b->collector.equation = equation;
 	mpq_clear(j.t);
 	return known && fastest_decay(&j.at) * nearest_double(model->h) > 0.8 + 0.1 * model->truncation.order;
 }

@@ -15,6 +15,7 @@ bool has_highest(const struct building *b, const struct form *form, int coord);
 void solve_for_highest(struct building *b, struct segment_equations *s);
 /* The left side minus the right side of an equation, not solved for its highest derivatives */
 const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
+void jacobian_of_motion(void *jacobian);    /* a struct jacobian, of M^-1 f as numbers alone */
 void check_mass_at_start(struct building *b);               /* that M is regular there */
 
 #endif
