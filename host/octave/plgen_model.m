@@ -48,10 +48,8 @@ classdef plgen_model < handle
 
         function other = copy(m)
             other = plgen_model();
-            for one = {"name", "states", "inputs", "outputs", "tunable", "h", "t", "spec", "text", "options", ...
-                       "asked", "given", "tuned", "code", "bytes", "fresh", "tail", "kept", "told"}
-                other.(one{1}) = m.(one{1});
-            end
+            adopt(other, m, {"name", "states", "inputs", "outputs", "tunable", "h", "t", "spec", "text", "options", ...
+                             "asked", "given", "tuned", "code", "bytes", "fresh", "tail", "kept", "told"});
         end
 
         % ---- where it is ----
@@ -88,10 +86,7 @@ classdef plgen_model < handle
 
         % ---- steps ----
 
-        function y = step(m, u)             % one step, u as NAME_step takes it; the outputs
-            if nargin < 2
-                u = [];
-            end
+        function y = step(m, u = [])        % one step, u as NAME_step takes it; the outputs
             [m.bytes, rows, ~, good] = plgen_mex("run", m.code.id, m.bytes, 1, double(u(:)));
             m.fresh = false;
             m.kept = false;
@@ -109,10 +104,7 @@ classdef plgen_model < handle
             m.bytes = plgen_mex("jump", m.code.id, m.bytes, n);
             m.fresh = false;
         end
-        function y = at(m, tau, u)          % the states tau after now, 0 <= tau <= h
-            if nargin < 3
-                u = [];
-            end
+        function y = at(m, tau, u = [])     % the states tau after now, 0 <= tau <= h
             if ! (tau >= 0 && tau <= m.h)
                 fail("tau is not in 0 .. h");
             end
@@ -151,10 +143,7 @@ classdef plgen_model < handle
         % ---- params ----
 
         function p = get.params(m)
-            p = m.given;
-            for i = 1:numel(m.tunable)
-                p.(m.tunable{i}) = m.tuned(i);
-            end
+            p = with_tuned(m, true(size(m.tunable)));
         end
 
         % Other values by name, "-step" among them; state and time stay. Only what is not tunable compiles a model.
@@ -171,9 +160,7 @@ classdef plgen_model < handle
                 for one = fieldnames(p).'
                     values(strcmp(one{1}, m.tunable)) = p.(one{1});
                 end
-                if isempty(h)
-                    h = m.h;
-                end
+                h = [h, m.h](1);
                 if ! isempty(fieldnames(p)) || h != m.h
                     tune(m, values, h);
                 end
@@ -334,11 +321,14 @@ classdef plgen_model < handle
             end
         end
 
-        function p = changed(m)
+        function p = with_tuned(m, which)   % params as they were given, and these of the tunable ones
             p = m.given;
-            for i = find(m.tuned != m.code.values)
+            for i = find(which)
                 p.(m.tunable{i}) = m.tuned(i);
             end
+        end
+        function p = changed(m)
+            p = with_tuned(m, m.tuned != m.code.values);
         end
         function h = step_now(m)
             h = m.h;
@@ -348,19 +338,15 @@ classdef plgen_model < handle
         end
 
         function text = trouble(m)
-            said = {};
-            for one = {2, "the step has met more crossings, or needed a longer search for them, than its bound"; ...
-                       1, "the step has left the finite numbers"; ...
-                       4, "the step needed more substeps than its bound"; ...
-                       8, "the last terms of the step are above the tolerance"; ...
-                       16, "what is to stick and what is to slip at an event had no answer"; ...
-                       32, "a state has left the range that the spec gives it"; ...
-                       64, "the step has ended beyond a stop"}.'
-                if bitand(m.status, one{1})
-                    said{end + 1} = one{2};
-                end
-            end
-            text = sprintf("%s: t = %.15g: %s", m.name, m.time, strjoin(said, "; "));
+            words = {2, "the step has met more crossings, or needed a longer search for them, than its bound"; ...
+                     1, "the step has left the finite numbers"; ...
+                     4, "the step needed more substeps than its bound"; ...
+                     8, "the last terms of the step are above the tolerance"; ...
+                     16, "what is to stick and what is to slip at an event had no answer"; ...
+                     32, "a state has left the range that the spec gives it"; ...
+                     64, "the step has ended beyond a stop"};
+            said = words(logical(bitand(double(m.status), [words{:, 1}])), 2);
+            text = sprintf("%s: t = %.15g: %s", m.name, m.time, strjoin(said.', "; "));
         end
 
         % What plgen writes for these params, and its messages
@@ -379,23 +365,13 @@ classdef plgen_model < handle
         end
 
         function build(m, params, h)
-            expressions = struct();
-            for one = fieldnames(params).'
-                if ischar(params.(one{1}))
-                    expressions.(one{1}) = params.(one{1});
-                end
-            end
+            names = fieldnames(params);
+            texts = cellfun(@(n) ischar(params.(n)), names);
+            expressions = rmfield(params, names(! texts));
             [c, said] = plgen(m, expressions, h, "");
-            known = tunable_in(c);
-            fixed = expressions;
-            values = struct();
-            for one = fieldnames(params).'
-                if any(strcmp(one{1}, known)) && ! ischar(params.(one{1}))
-                    values.(one{1}) = params.(one{1});
-                else
-                    fixed.(one{1}) = params.(one{1});
-                end
-            end
+            free = ! texts & ismember(names, tunable_in(c));
+            fixed = rmfield(params, names(free));
+            values = rmfield(params, names(! free));
             if ! isequal(fixed, expressions)
                 [c, said] = plgen(m, fixed, h, "");
             end
@@ -416,24 +392,23 @@ classdef plgen_model < handle
                     put(m, was.state, was.time);
                 end
             catch why
-                for one = {"name", "states", "inputs", "outputs", "tunable", "h", "asked", "given", "tuned", "code", ...
-                           "bytes"}
-                    m.(one{1}) = was.(one{1});
-                end
+                adopt(m, was, {"name", "states", "inputs", "outputs", "tunable", "h", "asked", "given", "tuned", ...
+                               "code", "bytes"});
                 rethrow(why);
             end
         end
 
+        function adopt(m, from, names)
+            for one = names
+                m.(one{1}) = from.(one{1});
+            end
+        end
+
         function take(m, code, fixed, h)
+            adopt(m, code, {"name", "states", "inputs", "outputs", "tunable", "h"});
             m.code = code;
-            m.name = code.name;
-            m.states = code.states;
-            m.inputs = code.inputs;
-            m.outputs = code.outputs;
-            m.tunable = code.tunable;
             m.given = fixed;
             m.asked = h;
-            m.h = code.h;
             m.tuned = code.values;
             m.told = [];
             reset(m);
@@ -446,15 +421,12 @@ function fail(text)
 end
 
 function p = named(list)
-    p = struct();
     if numel(list) == 1 && isstruct(list{1})
         p = list{1};
     elseif mod(numel(list), 2)
         fail("expected params as names and values");
     else
-        for i = 1:2:numel(list)
-            p.(list{i}) = list{i + 1};
-        end
+        p = struct(list{:});
     end
 end
 
@@ -520,13 +492,8 @@ function write_text(path, text)
 end
 
 function path = first_of(list, file)
-    path = "";
-    for one = list
-        if ! isempty(one{1}) && exist([one{1}, file], "file") == 2
-            path = one{1};
-            return
-        end
-    end
+    there = cellfun(@(one) ! isempty(one) && exist([one, file], "file") == 2, list);
+    path = [list(there), {""}]{1};
 end
 
 function path = find_plgen()
@@ -566,10 +533,7 @@ end
 
 function names = tunable_in(c)
     found = regexp(c, '_param_names\[\] = \{([^}]*)\}', "tokens", "once");
-    names = {};
-    if ! isempty(found)
-        names = cellfun(@(w) w{1}, regexp(found{1}, '"([^"]*)"', "tokens"), "UniformOutput", false);
-    end
+    names = [{}, regexp(["", found{:}], '"([^"]*)"', "tokens"){:}];
 end
 
 % The compiler's words, and a key of all that an object is made of: another one has another name in the cache.
@@ -584,12 +548,9 @@ function [words, runtime, key] = compiler()
     end
     runtime = find_runtime();
     words = [words, " -O2 -fPIC -w ", getenv("CFLAGS"), " -I ", quoted(runtime)];
-    key = [words, version];
     files = sort([glob([runtime, "/*.c"]); glob([runtime, "/*.h"])]);
-    for i = 1:numel(files)
-        key = [key, files{i}, fileread(files{i})];
-    end
-    key = hash("sha256", key);
+    texts = cellfun(@fileread, files, "UniformOutput", false);
+    key = hash("sha256", [words, version, [files, texts].'{:}]);
 end
 
 % Loaded from the cache, or made: in a folder of its own, and renamed into its place.
