@@ -1,55 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The numbers of a tape: in double, and at any precision. */
+/* The numbers of a tape, at any precision. */
 #include "tape/tape.h"
-
-#include <math.h>
-
-/* ---- double ---- */
-
-static double function_double(enum function function, double x)
-{
-	switch (function) {
-#define REAL_FUNCTION(NAME, name, argument, value, low, high) case FN_##NAME: return name(x);
-#include "read/functions.def"
-#undef REAL_FUNCTION
-	default: return NAN;
-	}
-}
-
-static double node_double(const struct tape_node *n, const struct tape_values *from, const double *value)
-{
-	double a = n->a == TAPE_NONE ? 0 : value[n->a], b = n->b == TAPE_NONE ? 0 : value[n->b];
-	switch (n->op) {
-	case TAPE_CONSTANT: return round_rational(n->value);
-	case TAPE_TRUE:     return 1;
-	case TAPE_FALSE:    return 0;
-	case TAPE_NEG:      return -a;
-	case TAPE_SIGN:     return (double)((a > 0) - (a < 0));
-	case TAPE_SIZE:     return fabs(a);
-	case TAPE_CALL:     return function_double((enum function)n->index, a);
-	case TAPE_NOT:      return a == 0;
-	case TAPE_ADD:      return a + b;
-	case TAPE_MUL:      return a * b;
-	case TAPE_DIV:      return a / b;
-	case TAPE_POWER:    return pow(a, b);
-	case TAPE_ATAN2:    return atan2(a, b);
-	case TAPE_LESS:     return a < b;
-	case TAPE_AT_MOST:  return a <= b;
-	case TAPE_EQUAL:    return a == b;
-	case TAPE_UNEQUAL:  return a != b;
-	case TAPE_SELECT:   return a != 0 ? b : value[n->c];
-	case TAPE_ACCUMULATE: return a + (b + value[n->c]);
-	default:            return from->operand_double(from->context, n);
-	}
-}
-
-void tape_run_double(const struct tape *t, const struct tape_values *from, double *value)
-{
-	for (int i = 0; i < tape_length(t); i++)
-		value[i] = node_double(tape_node(t, i), from, value);
-}
-
-/* ---- any precision ---- */
 
 /* Of numbers one of which is not defined there is no order: what is chosen by it is not defined either. */
 static void compare_mpfr(enum tape_op op, mpfr_srcptr a, mpfr_srcptr b, mpfr_ptr value)

@@ -123,7 +123,7 @@ static void operand(const void *context, const struct tape_node *n, mpfr_ptr val
 static void find(struct sample *s, tape_ref ref)
 {
 	const struct tape_node *n = tape_node(tape_of_forms(s->forms), ref);
-	const struct tape_values from = { operand, NULL, s };
+	const struct tape_values from = { operand, s };
 	unsigned now = s->now[s->change[ref]];
 	if (s->found[ref] == now)
 		return;

@@ -170,11 +170,9 @@ void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);
 
 struct tape_values {                /* what operands are; NULL where the tape has none of that kind */
 	void (*operand)(const void *context, const struct tape_node *node, mpfr_ptr value);
-	double (*operand_double)(const void *context, const struct tape_node *node);
 	const void *context;
 };
 /* value: one a node. Where a condition is undefined so is what it chooses; only what is chosen has to be defined. */
-void tape_run_double(const struct tape *t, const struct tape_values *from, double *value);
 void tape_run_mpfr(const struct tape *t, const struct tape_values *from, mpfr_t *value);
 
 /* of one node, once what it reads has its value */

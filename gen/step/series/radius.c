@@ -63,7 +63,7 @@ static struct values evaluate(const struct step *step)
 	for (int k = 0; k <= order; k++)
 		for (int i = 0; i < states; i++)
 			ref[i * (order + 1) + k] = recurrence(r, i, k);
-	struct tape_values from = { operand_at_start, NULL, &v };
+	struct tape_values from = { operand_at_start, &v };
 	int length = tape_length(tape_of_recurrences(r));
 	REALS *value = reals(length, LDBL_MANT_DIG);
 	tape_run_mpfr(tape_of_recurrences(r), &from, value);
