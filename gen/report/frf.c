@@ -60,6 +60,19 @@ struct responses responses_of(const struct step *step, struct band band)
 	return r;
 }
 
+void print_rows(FILE *to, const struct band *band, int count, int ways, double *const *size, double *const *angle,
+		char between)
+{
+	const int digits = ways > 1 ? 12 : 17;
+	for (int row = 0; row < band->count; row++) {
+		fprintf(to, "%.17g", frequency_of(band, row));
+		for (int k = row * count; k < (row + 1) * count; k++)
+			for (int w = 0; w < ways; w++)
+				fprintf(to, "%c%.*g%c%.*g", between, digits, size[w][k], between, digits, angle[w][k]);
+		fputc('\n', to);
+	}
+}
+
 static void print_sweeps(FILE *to, const struct step *step, struct band band, double amplitude)
 {
 	static const char *const way[2] = { "up", "down" };
@@ -70,14 +83,7 @@ static void print_sweeps(FILE *to, const struct step *step, struct band band, do
 			fprintf(to, ",%s/%s mag %s,%s/%s phase %s", s.of[k].output, s.of[k].drive, way[w],
 				s.of[k].output, s.of[k].drive, way[w]);
 	fputc('\n', to);
-	for (int row = 0; row < band.count; row++) {
-		fprintf(to, "%.17g", frequency_of(&band, row));
-		for (int k = 0; k < s.count; k++)
-			for (int w = 0; w < 2; w++)
-				fprintf(to, ",%.12g,%.12g", s.size[w][row * s.count + k],
-					s.angle[w][row * s.count + k]);
-		fputc('\n', to);
-	}
+	print_rows(to, &band, s.count, 2, s.size, s.angle, ',');
 }
 
 void print_response(FILE *to, const struct step *step, const char *band, const char *amplitude)
@@ -92,10 +98,5 @@ void print_response(FILE *to, const struct step *step, const char *band, const c
 		fprintf(to, ",%s/%s mag,%s/%s phase", r.transfer[k].output, r.transfer[k].drive, r.transfer[k].output,
 			r.transfer[k].drive);
 	fputc('\n', to);
-	for (int row = 0; row < r.band.count; row++) {
-		fprintf(to, "%.17g", frequency_of(&r.band, row));
-		for (int k = 0; k < r.count; k++)
-			fprintf(to, ",%.17g,%.17g", r.size[row * r.count + k], r.angle[row * r.count + k]);
-		fputc('\n', to);
-	}
+	print_rows(to, &r.band, r.count, 1, &r.size, &r.angle, ',');
 }

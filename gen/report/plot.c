@@ -240,14 +240,7 @@ static void plot_sweeps(struct picture *p)
 			amplitude_of(p->amplitude));
 	int drives = 0;
 	fputs("$frf << END\n", p->data);
-	for (int row = 0; row < s.band.count; row++) {
-		fprintf(p->data, "%.17g", frequency_of(&s.band, row));
-		for (int k = 0; k < s.count; k++)
-			for (int down = 0; down < 2; down++)
-				fprintf(p->data, " %.12g %.12g", s.size[down][row * s.count + k],
-					s.angle[down][row * s.count + k]);
-		fputc('\n', p->data);
-	}
+	print_rows(p->data, &s.band, s.count, 2, s.size, s.angle, ' ');
 	fputs("END\n", p->data);
 	for (int first = 0, last; first < s.count; first = last, drives++) {
 		for (last = first; last < s.count && s.of[last].drive_index == s.of[first].drive_index; last++)
@@ -272,12 +265,7 @@ static void plot_frf(struct picture *p)
 	int count = poles_of(p->step->model, p->step->written, &pole), drives = 0;
 	struct responses r = responses_of(p->step, band_of_poles(count, pole, 2 * POINTS / 3 + 1));
 	fputs("$frf << END\n", p->data);
-	for (int row = 0; row < r.band.count; row++) {
-		fprintf(p->data, "%.17g", frequency_of(&r.band, row));
-		for (int k = 0; k < r.count; k++)
-			fprintf(p->data, " %.17g %.17g", r.size[row * r.count + k], r.angle[row * r.count + k]);
-		fputc('\n', p->data);
-	}
+	print_rows(p->data, &r.band, r.count, 1, &r.size, &r.angle, ' ');
 	fputs("END\n", p->data);
 	for (int first = 0, last; first < r.count; first = last, drives++) {
 		last = first;

@@ -177,6 +177,9 @@ struct responses {                  /* [row][transfer]; angles [deg] with the tu
 	double *size, *angle;
 };
 struct responses responses_of(const struct step *step, struct band band);
+/* Of each frequency a row: it, then sizes and angles, of 12 digits where there are several ways through the band */
+void print_rows(FILE *to, const struct band *band, int count, int ways, double *const *size, double *const *angle,
+		char between);
 /* as CSV; with an amplitude of the excitation, as below */
 void print_response(FILE *to, const struct step *step, const char *band, const char *amplitude);
 
