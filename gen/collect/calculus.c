@@ -352,10 +352,25 @@ static struct form *place_product(struct point *p, const struct atom *a, struct 
 	return product;
 }
 
-static struct form *placed_solution(struct collector *c, const struct atom *a, struct form *const *x)
+struct form *kept_again(struct collector *c, const struct atom *a, struct form *const *x)
 {
-	const struct linear_system e = system_of(a, (const struct form *const *)x);
-	return kept_solution(c, a->node, &e, a->component);
+	struct form *product = form_number(1);
+	struct linear_system equations;
+	switch (a->kind) {
+	case ATOM_PRODUCT:
+		for (int i = 0; i < a->operands; i++)
+			product = kept_product(c, a->node, product, kept_whole_power(c, a->node, x[i], a->exponent[i]));
+		return product;
+	case ATOM_PARAM:      return kept_param(c, a->node, a->param);
+	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
+	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
+	case ATOM_CALL:       return kept_call(c, a->node, a->function, a->operands, x);
+	case ATOM_SOLUTION:
+		equations = system_of(a, (const struct form *const *)x);
+		return kept_solution(c, a->node, &equations, a->component);
+	case ATOM_COMPARE:    return kept_comparison(c, a->node, a->comparison, x[0], x[1]);
+	default:              return kept_choice(c, a->node, x[0], x[1], x[2]);
+	}
 }
 
 static struct form *place_param(const struct point *p, const struct atom *a)
@@ -369,28 +384,19 @@ static struct form *place_param(const struct point *p, const struct atom *a)
 
 static struct form *place_atom(struct point *p, const struct atom *a)
 {
-	struct collector *c = p->c;
 	if (a->kind == ATOM_PARAM)
 		return place_param(p, a);
 	struct form **x = ARRAY(struct form *, a->operands);
 	x[0] = place_form(p, a->operand[0]);
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
 		RATIONAL truth = ZERO;
-		constant_value(c, x[0], truth);
+		constant_value(p->c, x[0], truth);
 		int taken = mpq_sgn(truth) != 0 ? 1 : 2;
 		return place_form(p, a->operand[taken]);
 	}
 	for (int i = 1; i < a->operands; i++)
 		x[i] = place_form(p, a->operand[i]);
-	switch (a->kind) {
-	case ATOM_PRODUCT:    return place_product(p, a, x);
-	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
-	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
-	case ATOM_CALL:       return kept_call(c, a->node, a->function, a->operands, x);
-	case ATOM_SOLUTION:   return placed_solution(c, a, x);
-	case ATOM_COMPARE:    return kept_comparison(c, a->node, a->comparison, x[0], x[1]);
-	default:              return kept_choice(c, a->node, x[0], x[1], x[2]);
-	}
+	return a->kind == ATOM_PRODUCT ? place_product(p, a, x) : kept_again(p->c, a, x);
 }
 
 static struct form *place_basis(struct point *p, const struct basis *basis)

@@ -240,6 +240,8 @@ struct fixing {                     /* a name that `operator at` fixes */
 /* With respect to one state: a coordinate, or its velocity */
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, bool by_input, int index,
 			       int order);
+/* The same atom of other operands */
+struct form *kept_again(struct collector *c, const struct atom *a, struct form *const *x);
 /* With respect to an operand of an atom, wherever it stands in it */
 struct form *form_partial(struct collector *c, const struct atom *atom, int operand);
 /* In time; `rate` gives the derivative of a term that is no atom. Each atom that is there now is derived once. */

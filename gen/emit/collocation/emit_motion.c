@@ -167,14 +167,9 @@ static bool ramps(const struct emitter *e, int input)
 static bool form_decides(const struct form *form, bool *seen)
 {
 	bool any = false;
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		if (!a || seen[a->index])
-			continue;
-		seen[a->index] = true;
-		any = any || a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN);
-		for (int k = 0; k < a->operands; k++)
-			any = form_decides(a->operand[k], seen) || any;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct atom *a = (*term)->basis.atom;
+		any = any || (a && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN)));
 	}
 	return any;
 }

@@ -41,16 +41,10 @@ static void add_drag(struct building *b, const struct atom *a)
 static void refuse_inside(const struct atom *a, bool *seen)
 {
 	for (int k = 0; k < a->operands; k++)
-		for (int i = 0; i < a->operand[k]->terms; i++) {
-			const struct atom *inner = a->operand[k]->term[i].basis.atom;
-			if (!inner || seen[inner->index])
-				continue;
-			if (is_friction(inner))
-				error(inner->node->at, "it stands alone in a sum: k*x + friction(x', F)",
+		for (const struct form_term **term = terms_within(a->operand[k], seen); *term; term++)
+			if ((*term)->basis.atom && is_friction((*term)->basis.atom))
+				error((*term)->basis.atom->node->at, "it stands alone in a sum: k*x + friction(x', F)",
 				      "what is not piecewise linear has friction for an argument");
-			seen[inner->index] = true;
-			refuse_inside(inner, seen);
-		}
 }
 
 static void find_drags(struct building *b)

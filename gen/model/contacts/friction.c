@@ -250,18 +250,6 @@ static struct stuck *find_stuck(struct building *b, const struct switching *s, i
 	return stuck;
 }
 
-/* The place among a form's terms of a state whose rate is a highest derivative; -1: there is none */
-static int velocity_term(const struct building *b, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD &&
-		    basis->order + 1 == b->model->frame.coord[basis->index]->highest)
-			return i;
-	}
-	return -1;
-}
-
 static bool has_states(const struct form *form)
 {
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_COORD;
@@ -280,7 +268,7 @@ static int place_term(const struct form *form)
 static bool hold_form(struct holding *h, const struct form *v, bool place)
 {
 	v = free_of_holds(h, v);
-	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v) : -1;
+	int at = has_states(v) ? place ? place_term(v) : velocity_term(h->b, v, false) : -1;
 	if (at >= 0)
 		hold_state(h, v, at);
 	return at >= 0;

@@ -39,6 +39,17 @@ void hold_state(struct holding *h, const struct form *v, int at)
 	region->hold[region->holds++].form = held;
 }
 
+int velocity_term(const struct building *b, const struct form *form, bool first_order)
+{
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		if (basis->kind == BASIS_COORD && !(first_order && basis->order > 0) &&
+		    basis->order + 1 == b->model->frame.coord[basis->index]->highest)
+			return i;
+	}
+	return -1;
+}
+
 void add_release(struct region *region, int function, bool upward, struct form *form)
 {
 	*MORE(region->release, region->releases) = (struct release){ function, upward, form, NULL };

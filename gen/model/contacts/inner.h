@@ -5,10 +5,13 @@
 
 #include "friction.h"
 
-/* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
+/* ---- holds.c: states of a region that follow from the others ---- */
 
 const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
 void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, solved for the state of its term `at` */
+/* The place among a form's terms of a state whose rate is a highest derivative, of a coordinate of first order where
+ * that is asked for; -1: there is none */
+int velocity_term(const struct building *b, const struct form *form, bool first_order);
 void add_release(struct region *region, int function, bool upward, struct form *form);
 
 /* ---- slider.c: friction of what has no mass ---- */

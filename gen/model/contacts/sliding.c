@@ -103,18 +103,6 @@ void slide_sliders(struct building *b, const struct switching *s, int index)
 	}
 }
 
-/* The place of a coordinate of first order; -1: there is none */
-static int slider_term(const struct building *b, const struct form *form)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		if (basis->kind == BASIS_COORD && basis->order == 0 &&
-		    b->model->frame.coord[basis->index]->highest == 1)
-			return i;
-	}
-	return -1;
-}
-
 void hold_sliders(struct holding *h, const struct switching *s)
 {
 	for (int i = 0; i < s->sliders; i++) {
@@ -122,7 +110,7 @@ void hold_sliders(struct holding *h, const struct switching *s)
 		if (h->region->slide[slider->atom->index].way == 0)
 			continue;
 		const struct form *place = free_of_holds(h, place_of(h->region, slider));
-		int at = slider_term(h->b, place);
+		int at = velocity_term(h->b, place, true);
 		if (at < 0)
 			error(slider->atom->node->at, "a spring between it and what moves, k*(x - z)",
 			      "what this friction bears does not depend on where it is");

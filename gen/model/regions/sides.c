@@ -246,27 +246,14 @@ static struct form *comparison_on_side(const struct side *s, const struct atom *
 
 static struct form *atom_on_side(struct side *s, const struct atom *a)
 {
-	struct collector *c = s->c;
-	struct form **x = ARRAY(struct form *, a->operands), *product = form_number(1);
-	struct linear_system equations;
+	struct form **x = ARRAY(struct form *, a->operands);
 	for (int i = 0; i < a->operands; i++)
 		x[i] = form_on_side(s, a->operand[i]);
 	struct decided d = a->kind == ATOM_CHOOSE ? decide(s, x[0]) : (struct decided){ false, 0, NULL };
-	switch (a->kind) {
-	case ATOM_PRODUCT:
-		for (int i = 0; i < a->operands; i++)
-			product = kept_product(c, a->node, product, kept_whole_power(c, a->node, x[i], a->exponent[i]));
-		return product;
-	case ATOM_PARAM:      return kept_param(c, a->node, a->param);
-	case ATOM_RECIPROCAL: return kept_reciprocal(c, a->node, x[0]);
-	case ATOM_POWER:      return kept_power(c, a->node, x[0], x[1]);
-	case ATOM_CALL:       return call_on_side(s, a, x);
-	case ATOM_SOLUTION:
-		equations = system_of(a, (const struct form *const *)x);
-		return kept_solution(c, a->node, &equations, a->component);
-	case ATOM_COMPARE:    return comparison_on_side(s, a, x);
-	default:              return d.known && !d.rest ? x[d.sign ? 1 : 2] : kept_choice(c, a->node, x[0], x[1], x[2]);
-	}
+	return a->kind == ATOM_CALL      ? call_on_side(s, a, x)
+	       : a->kind == ATOM_COMPARE ? comparison_on_side(s, a, x)
+	       : d.known && !d.rest      ? x[d.sign ? 1 : 2]
+					 : kept_again(s->c, a, x);
 }
 
 struct form *form_on_side(struct side *s, const struct form *form)
