@@ -565,11 +565,7 @@ static bool print_many(struct work *w, void (*print)(void *))
 static bool goes_with_delays(const struct work *w)
 {
 	const struct options *o = &w->options;
-	const char *what = o->fmu			? "--fmu"
-			   : o->print == PRINT_RESPONSE ? "--response"
-			   : o->print == PRINT_PLOT     ? "--plot"
-			   : o->print == PRINT_REPORT   ? "--report"
-							: NULL;
+	const char *what = o->fmu ? "--fmu" : o->amplitude ? "--amplitude" : NULL;
 	const struct facts facts = facts_of_model(w->model);
 	const char *against = objection_to(CAN_VIEWS, &facts, w->model).why;
 	if (!what || !against)

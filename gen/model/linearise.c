@@ -130,7 +130,7 @@ static const char *factor_text(mpq_srcptr q)
 }
 
 /* 3*x', - x, behind others + 3*x'; nothing where the factor is 0. `begun`: others stand before it */
-static void print_term(FILE *to, mpq_srcptr factor, const char *name, int primes, bool *begun)
+static void print_term(FILE *to, mpq_srcptr factor, const char *name, bool *begun)
 {
 	const bool negative = mpq_sgn(factor) < 0;
 	RATIONAL size = ZERO;
@@ -140,19 +140,31 @@ static void print_term(FILE *to, mpq_srcptr factor, const char *name, int primes
 	fputs(negative ? *begun ? " - " : "-" : *begun ? " + " : "", to);
 	if (mpq_cmp_ui(size, 1, 1) != 0)
 		fprintf(to, "%s*", factor_text(size));
-	fprintf(to, "%s%.*s", name, primes, "''");
+	fputs(name, to);
 	*begun = true;
 }
 
-static const char *coordinate_name(const struct linearising *l, int coord)
+/* x'', u', u(t - 0.1): of a coordinate or an input */
+static const char *name_of_fixing(const struct linearising *l, const struct fixing *what)
 {
-	return plain_name(l->b->model->names.coord[coord]);
+	const struct symbol *s = what->symbol;
+	const struct delays *delays = l->b->model->delays;
+	const bool input = s->kind == SYMBOL_INPUT;
+	const char *name = !input ? l->b->model->names.coord[what->coord] : s->delayed ? s->delayed->name : s->name;
+	name = format("%s%.*s", plain_name(name), what->order, "''");
+	if (!input || !s->delayed)
+		return name;
+	RATIONAL delay = ZERO;
+	mpq_set_si(delay, delays->delay[s->index - delays->inputs].back, 1);
+	mpq_mul(delay, delay, l->b->model->h);
+	return format("%s(t - %s)", name, number_text(delay));
 }
 
 static void print_declarations(FILE *to, const struct linearising *l)
 {
 	const struct spec *spec = l->b->spec;
-	fprintf(to, "model %s\n", l->b->model->name);
+	const struct delays *delays = l->b->model->delays;
+	fprintf(to, "model %s\n", delays ? delays->name : l->b->model->name);
 	for (const struct symbol *s = spec->first; s; s = s->next) {
 		const char *name = s->name ? plain_name(s->name) : "";
 		if (s->kind == SYMBOL_COORD && s->length)
@@ -162,7 +174,7 @@ static void print_declarations(FILE *to, const struct linearising *l)
 	}
 	static const char *const hold[] = { [0] = "", [1] = " hold first", [3] = " hold third", [5] = " hold fifth",
 					    [7] = " hold seventh" };
-	for (int i = 0; i < l->inputs; i++)
+	for (int i = 0; i < (delays ? delays->inputs : l->inputs); i++)
 		fprintf(to, "input %s%s\n", plain_name(l->input[i]->name), hold[l->input[i]->hold]);
 }
 
@@ -179,7 +191,7 @@ static void print_load(FILE *to, const struct form_term *term, bool *begun)
 			      factor_text(forcing->w),
 			      mpq_sgn(forcing->p) == 0 ? "" : format(" + %s", factor_text(forcing->p)));
 	mpq_neg(factor, term->factor);
-	print_term(to, factor, name, 0, begun);
+	print_term(to, factor, name, begun);
 }
 
 static void print_loads(FILE *to, const struct form *form, bool *begun)
@@ -219,12 +231,10 @@ static void print_terms(FILE *to, const struct linearising *l, mpq_t *const *slo
 	RATIONAL factor = ZERO;
 	for (; *order >= 0; order++) {
 		const struct fixing *what = &l->fixing[*order];
-		const bool input = what->symbol->kind == SYMBOL_INPUT;
 		mpq_set(factor, slope[*order][row]);
 		if (negative)
 			mpq_neg(factor, factor);
-		print_term(to, factor, input ? plain_name(what->symbol->name) : coordinate_name(l, what->coord),
-			   what->order, begun);
+		print_term(to, factor, name_of_fixing(l, what), begun);
 	}
 }
 
@@ -451,8 +461,6 @@ static void check_contacts(const struct building *b)
 	if (facts.contacts)
 		error(b->spec->name_at, "plrun runs any model, also with a record that sweeps",
 		      "friction, impacts and jumps have no linear equations");
-	if (facts.delays)
-		error(b->spec->name_at, NULL, "delayed inputs have no linear equations without delay");
 }
 
 /* By the residuals as they are written: solved for highest derivatives, forces on one coordinate would stand in all
@@ -505,7 +513,7 @@ static void print_spec(FILE *to, struct linearising *l)
 	print_equations(to, l);
 	print_outputs(to, l);
 	if (mpq_sgn(model->h) > 0)
-		fprintf(to, "step %s\n", number_text(model->h));
+		fprintf(to, "step %s\n", number_text(model->delays ? model->delays->h : model->h));
 }
 
 static void spell_places(const struct linearising *l)

@@ -38,6 +38,42 @@ static void need_transfers(const struct model *model)
 		      "there is no input and no load that an output could be told over");
 }
 
+/* Over each input alone: what it does some time later is added to what it does at once */
+static void join_delays(const struct model *model, struct responses *r)
+{
+	const struct delays *delays = model->delays;
+	int count = 0;
+	struct transfer *all = r->transfer;
+	for (int k = 0; k < r->count; k++) {
+		const int late = all[k].input - delays->inputs;
+		int of = k;
+		mpq_init(all[k].delay);
+		if (late >= 0) {
+			const struct delay *d = &delays->delay[late];
+			mpq_set_si(all[k].delay, d->back, 1);
+			mpq_mul(all[k].delay, all[k].delay, model->h);
+			for (of = 0; all[of].input != d->symbol->delayed->index ||
+			     strcmp(all[of].output, all[k].output) != 0; of++)
+				;
+		}
+		if (of == k || all[k].N.length == 0)
+			continue;
+		all[k].earlier = all[of].earlier;
+		all[of].earlier = &all[k];
+	}
+	r->transfer = ARRAY(struct transfer, (size_t)r->count + 1);
+	for (int k = 0; k < r->count; k++)
+		if (all[k].input < delays->inputs)
+			r->transfer[count++] = all[k];
+	r->count = count;
+}
+
+/* With the turns from frequency 0 on; of a sum, which has no end of zeros, as it is */
+static struct angle_course course_of(const struct model *model, const struct transfer *t)
+{
+	return t->earlier ? (struct angle_course){ 0 } : angle_course_of(model, t);
+}
+
 struct responses responses_of(const struct step *step, struct band band)
 {
 	const struct model *model = step->shown->model;
@@ -45,15 +81,18 @@ struct responses responses_of(const struct step *step, struct band band)
 	need_transfers(model);
 	struct responses r = { .band = band };
 	r.count = transfers_of(resolvent_of(&model->system), model, &r.transfer);
+	if (model->delays)
+		join_delays(model, &r);
 	r.size = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
 	r.angle = ARRAY(double, (size_t)band.count * (size_t)r.count + 1);
 	for (int k = 0; k < r.count; k++) {
-		struct angle_course course = angle_course_of(model, &r.transfer[k]);
+		struct angle_course course = course_of(model, &r.transfer[k]);
 		progress("frequency response", k, r.count);
 		for (int row = 0; row < band.count; row++) {
 			double f = frequency_of(&band, row), angle;
 			transfer_at(&r.transfer[k], f, &r.size[row * r.count + k], &angle);
-			r.angle[row * r.count + k] = angle_on_course(&course, f, angle);
+			r.angle[row * r.count + k] =
+				r.transfer[k].earlier ? angle : angle_on_course(&course, f, angle);
 		}
 	}
 	progress_end();

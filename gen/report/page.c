@@ -316,13 +316,15 @@ static bool is_there(const struct section *section, const struct step *step)
 void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look)
 {
 	const struct model *model = step->shown->model;
-	const char *title = escaped(look->title ? look->title : model->name);
+	const char *name = model->delays ? model->delays->name : model->name;
+	const char *title = escaped(look->title ? look->title : name);
+	const int inputs = model->delays ? model->delays->inputs : model->system.inputs;
 	fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
 		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s%s</style>\n"
 		    "</head>\n<body>\n<h1>%s</h1>\n", title, style, look->dark ? dark : "", title);
 	fprintf(to, "<p>%d coordinate%s, %d states, %d input%s, %d output%s; plgen " PLGEN_VERSION "%s%s.</p>\n<nav>",
-		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states,
-		model->system.inputs, model->system.inputs == 1 ? "" : "s", model->outputs,
+		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states, inputs,
+		inputs == 1 ? "" : "s", model->outputs,
 		model->outputs == 1 ? "" : "s", *options ? " " : "", escaped(options));
 	for (int i = 0; i < SECTIONS; i++)
 		if (is_there(&sections[i], step))

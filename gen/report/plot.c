@@ -152,7 +152,7 @@ static const char *curves(const struct model *model, const struct responses *r, 
 	const char *text = "";
 	*count = 0;
 	for (int k = first; k < last; k++) {
-		if (r->transfer[k].N.length == 0)
+		if (r->transfer[k].N.length == 0 && !r->transfer[k].earlier)
 			continue;
 		if (*count < CURVES)
 			text = format("%s%s using 1:%d %s title %s", text, *text ? ", ''" : format("plot %s", data),

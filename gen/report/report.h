@@ -123,8 +123,12 @@ struct drive {                      /* what an output is told over */
 };
 struct transfer {                   /* H(s) = scale N/D of an output over it, N and D coprime; N of length 0: it is 0 */
 	const char *output, *drive;
+	int input;                  /* -1: over a load */
 	mpq_t scale;
 	struct poly N, D;
+	/* of frequency responses alone: over the same input as it was some time ago, which is added; NULL: none */
+	const struct transfer *earlier;
+	mpq_t delay;                /* this one's own [s] */
 };
 struct zero { double re, im; int multiplicity; bool pair; }; /* [1/s]; a pair: it and its conjugate */
 bool is_reported(const struct output *output);              /* it is linear in states, loads and inputs, and no peak */
@@ -133,7 +137,8 @@ int  drives_of(const struct model *model, struct drive **drives); /* inputs, the
 int  transfers_of(struct resolvent *r, const struct model *model, struct transfer **list);
 bool static_gain(const struct transfer *t, mpq_ptr gain);   /* H(0); false: there is a pole at 0 */
 int  zeros_of_transfer(const struct model *model, const struct transfer *t, struct zero **list);
-/* |H(2 pi i f)| and its angle [deg], -180 <= angle < 180, each rounded once; of a pole: infinite */
+/* |H(2 pi i f)|, what is earlier counted, and its angle [deg], -180 <= angle < 180, each rounded once; of a pole:
+ * infinite */
 void transfer_at(const struct transfer *t, double hertz, double *size, double *angle);
 
 struct angle_course {               /* of an angle: how the zeros and poles turn it */
@@ -170,7 +175,7 @@ bool read_number(const char *text, const char *end, double *number); /* up to `e
 struct band band_of(const char *text);                       /* F0:F1[:N] of the command line; leaves the statement */
 double frequency_of(const struct band *band, int row);
 struct band band_of_poles(int count, const struct pole_report *pole, int rows); /* around them */
-struct responses {                  /* [row][transfer]; angles [deg] with the turns from frequency 0 on */
+struct responses {                  /* [row][transfer]; angles [deg] with the turns from frequency 0 on, but of sums */
 	struct band band;
 	int count;
 	struct transfer *transfer;

@@ -139,6 +139,22 @@ static void json_discrete(FILE *to, const struct space *s)
 	fputs("}},\n", to);
 }
 
+/* Inputs that are another one as it was some time ago [s] */
+static void json_delays(FILE *to, const struct model *model)
+{
+	const struct delays *delays = model->delays;
+	RATIONAL delay = ZERO;
+	fputs(", \"delays\": [", to);
+	for (int i = 0; i < delays->count; i++) {
+		mpq_set_si(delay, delays->delay[i].back, 1);
+		mpq_mul(delay, delay, model->h);
+		fprintf(to, "%s{\"input\": \"%s\", \"of\": \"%s\", \"delay\": %s}", i ? ", " : "",
+			delays->delay[i].symbol->name, delays->delay[i].symbol->delayed->name,
+			json_number(nearest_double(delay)));
+	}
+	fputs("]", to);
+}
+
 static void json_space(FILE *to, const struct model *model)
 {
 	struct space s = space_of(model);
@@ -151,6 +167,8 @@ static void json_space(FILE *to, const struct model *model)
 	json_names(to, "inputs", s.drives, input);
 	fputs(", ", to);
 	json_names(to, "outputs", s.outputs, output);
+	if (model->delays)
+		json_delays(to, model);
 	json_exact(to, "A", s.states, s.states, s.A);
 	json_exact(to, "B", s.states, s.drives, s.B);
 	json_exact(to, "C", s.outputs, s.states, s.C);

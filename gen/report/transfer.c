@@ -76,7 +76,7 @@ static struct transfer transfer_of(struct resolvent *r, const struct model *mode
 				   const struct drive *drive)
 {
 	const struct output *read = &model->output[output];
-	struct transfer t = { .output = read->name, .drive = drive->name };
+	struct transfer t = { .output = read->name, .drive = drive->name, .input = drive->input };
 	RATIONAL zero = ZERO, one = RATIO(1, 1);
 	if (drive->input >= 0)
 		multiply_by_s(&t, output_of_input(r, &model->system, read, drive->input, zero, one), 2);
@@ -177,15 +177,58 @@ static bool round_double(mpfi_srcptr x, double *d)
 	return *d == mpfr_get_d(&x->right, MPFR_RNDN);
 }
 
+/* e^{-2 pi i f d}, exact at quarters of a turn */
+static void enclose_delay(struct rectangle *z, double hertz, mpq_srcptr delay)
+{
+	static const int cosine[] = { 1, 0, -1, 0 };
+	RATIONAL quarters = ZERO, whole = ZERO;
+	mpq_set_d(quarters, hertz);
+	mpq_mul(quarters, quarters, delay);
+	mpq_mul_2exp(quarters, quarters, 2);
+	if (mpz_cmp_ui(mpq_denref(quarters), 1) == 0) {
+		const unsigned long quarter = mpz_fdiv_ui(mpq_numref(quarters), 4);
+		mpfi_set_si(z->re, cosine[quarter]);
+		mpfi_set_si(z->im, cosine[(quarter + 1) % 4]);
+		return;
+	}
+	RECTANGLE a = new_rectangle((int)mpfi_get_prec(z->re));
+	mpfi_const_pi(a.im);
+	mpfi_div_si(a.im, a.im, -2);
+	mpfi_set_ui(a.re, 0);
+	rectangle_exp(z, &a, quarters);
+}
+
+/* The sum over one input and what it was earlier, scale and all; `size`: about log2 of the largest term */
+static void enclose_sum(const struct transfer *t, double hertz, struct rectangle *sum, long *size)
+{
+	const int precision = (int)mpfi_get_prec(sum->re);
+	RECTANGLE z = new_rectangle(precision), turned = new_rectangle(precision);
+	*size = NO_SIZE;
+	mpfi_set_ui(sum->re, 0);
+	mpfi_set_ui(sum->im, 0);
+	for (; t; t = t->earlier) {
+		if (t->N.length == 0)
+			continue;
+		enclose_quotient(t, hertz, &z, precision);
+		enclose_delay(&turned, hertz, t->delay);
+		rectangle_mul(&z, &z, &turned);
+		mpfi_mul_q(z.re, z.re, t->scale);
+		mpfi_mul_q(z.im, z.im, t->scale);
+		mpfi_add(sum->re, sum->re, z.re);
+		mpfi_add(sum->im, sum->im, z.im);
+		*size = rectangle_size(&z) > *size ? rectangle_size(&z) : *size;
+	}
+}
+
 /* |H| and, in degrees from -180 up to 180, its angle; a number below 0 is at -180. Both rounded to nearest, once */
-static bool round_polar(const struct transfer *t, const struct rectangle *z, double *size, double *angle)
+static bool round_polar(mpq_srcptr scale, const struct rectangle *z, double *size, double *angle)
 {
 	int precision = (int)mpfi_get_prec(z->re);
 	INTERVAL x = OVER_BITS(precision), pi = OVER_BITS(precision);
 	mpfi_hypot(x, z->re, z->im);
-	mpfi_mul_q(x, x, t->scale);
+	mpfi_mul_q(x, x, scale);
 	mpfi_abs(x, x);
-	bool found = round_double(x, size) && isfinite(*size), negative = mpq_sgn(t->scale) < 0;
+	bool found = round_double(x, size) && isfinite(*size), negative = mpq_sgn(scale) < 0;
 	if (found && mpfi_is_zero(z->im)) {
 		*angle = mpfi_is_neg(z->re) != negative ? -180 : 0;
 	} else if (found) {
@@ -205,16 +248,35 @@ static bool round_polar(const struct transfer *t, const struct rectangle *z, dou
 	return found;
 }
 
+/* Terms that cancel leave 0: an enclosure of that has no digits, however small it becomes */
+static void sum_at(const struct transfer *t, double hertz, double *size, double *angle)
+{
+	RATIONAL one = RATIO(1, 1);
+	for (int precision = 128; precision <= 1024; precision *= 2) {
+		RECTANGLE z = new_rectangle(precision);
+		long most;
+		enclose_sum(t, hertz, &z, &most);
+		if (rectangle_size(&z) < most - 512 || round_polar(one, &z, size, angle))
+			return;
+	}
+	*size = HUGE_VAL;
+	*angle = 0;
+}
+
 void transfer_at(const struct transfer *t, double hertz, double *size, double *angle)
 {
 	*size = *angle = 0;
+	if (t->earlier) {
+		sum_at(t, hertz, size, angle);
+		return;
+	}
 	if (t->N.length == 0)
 		return;
 	bool found = false;
 	for (int precision = 128; !found && precision <= LIMIT_PRECISION; precision *= 2) {
 		RECTANGLE z = new_rectangle(precision);
 		enclose_quotient(t, hertz, &z, precision);
-		found = round_polar(t, &z, size, angle);
+		found = round_polar(t->scale, &z, size, angle);
 	}
 	if (!found)                     /* no frequency but 0 is a pole: others are rational multiples of pi */
 		*size = HUGE_VAL;

@@ -199,23 +199,13 @@ classdef plgen_model < handle
         % A, B, C, D (B1, D1 of u' where it acts) over the inputs, or with loads = true over the spec's loads; discrete:
         % those of a step over which u is held, or []. at: of a model that is not linear, where: "rest" (the default;
         % then a warning says so), "now", or states, "x=0.1,v=2"; s.at says it, and x, u, y are deviations from there
-        function s = state_space(m, loads, at = "")
-            [e, note] = equations(m, at);
-            delayed = e.ss.inputs(! cellfun(@isempty, strfind(e.ss.inputs, ".delayed")));
-            if ! isempty(delayed)
+        function s = state_space(m, loads = false, at = "")
+            s = wide_space(m, loads, at);
+            if ! isempty(s.delays)
                 fail([m.name, ": inputs are delayed, so it has no state space over them: it would leave out ", ...
-                      strjoin(delayed, ", ")]);
+                      strjoin({s.delays.input}, ", "), "; response counts them"]);
             end
-            column = ismember(e.ss.inputs, m.inputs) != (nargin > 1 && loads);
-            s = space_of(e.ss, column, numel(m.states));
-            s.discrete = [];
-            if isstruct(e.ss.discrete)
-                s.discrete = space_of(e.ss.discrete, column, numel(m.states));
-                s.discrete.h = e.ss.discrete.h;
-            end
-            s.inputs = e.ss.inputs(column);
-            s.outputs = e.ss.outputs;
-            s.at = note;
+            s = rmfield(s, "delays");
         end
 
         function [A, B, C, D] = linearise(m, at = "rest")
@@ -230,17 +220,45 @@ classdef plgen_model < handle
             end
         end
 
-        function r = response(m, f, varargin)       % outputs x inputs x f [Hz], complex
-            s = state_space(m, varargin{:});
+        % Outputs x inputs x f [Hz], complex; u(t - d) counts as e^(-2 pi i f d) u
+        function r = response(m, f, loads = false, at = "")
+            s = wide_space(m, loads, at);
             r = zeros(rows(s.C), columns(s.B), numel(f));
             for k = 1:numel(f)
                 p = 2i * pi * f(k);
                 r(:, :, k) = s.C * ((p * eye(rows(s.A)) - s.A) \ (s.B + p * s.B1)) + s.D + p * s.D1;
+                for late = s.delays(:).'
+                    one = strcmp(s.inputs, late.of);
+                    r(:, one, k) += exp(-p * late.delay) * r(:, strcmp(s.inputs, late.input), k);
+                end
             end
+            r = r(:, 1:columns(r) - numel(s.delays), :);
         end
     end
 
     methods (Access = private)
+        % As state_space; inputs as they were some time ago are inputs, too, the last ones
+        function s = wide_space(m, loads = false, at = "")
+            [e, note] = equations(m, at);
+            delays = struct("input", {}, "of", {}, "delay", {});
+            if isfield(e.ss, "delays")
+                delays = e.ss.delays;
+            end
+            late = {delays.input};
+            column = ismember(e.ss.inputs, [m.inputs(:); late(:)]) != loads;
+            delays = delays(1:end * ! loads);
+            s = space_of(e.ss, column, numel(m.states));
+            s.discrete = [];
+            if isstruct(e.ss.discrete)
+                s.discrete = space_of(e.ss.discrete, column, numel(m.states));
+                s.discrete.h = e.ss.discrete.h;
+            end
+            s.inputs = e.ss.inputs(column);
+            s.outputs = e.ss.outputs;
+            s.at = note;
+            s.delays = delays;
+        end
+
         function [e, note] = equations(m, at)
             e = m.explain;
             note = "";

@@ -66,7 +66,8 @@ if command -v fish >/dev/null 2>&1; then
 	# completes LINE: what is offered behind it, by the file that fish itself finds
 	completes() {
 		LINE=$1 STAGED=$prefix/share/fish/vendor_completions.d HOME=$PWD XDG_CONFIG_HOME=$PWD \
-			XDG_DATA_HOME=$PWD fish -c 'set fish_complete_path $STAGED; complete -C $LINE' 2>>log | cut -f 1 | sort -u
+			XDG_DATA_HOME=$PWD fish -c 'set fish_complete_path $STAGED; complete -C $LINE' 2>>log |
+			cut -f 1 | sort -u
 	}
 	for command in plgen plrun; do
 		: >log

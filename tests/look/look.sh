@@ -37,6 +37,44 @@ result $? 'names of the columns'
 	"$root/models/sdcsf.spec" >two && [ "$(tail -n 1 many)" = "$(tail -n 1 two)" ] && [ "$(wc -l <two)" -eq 3 ]
 result $? 'a phase does not depend on the rows before it'
 
+# ---- delayed inputs: e^{-iwd} of each, by complex numbers; what cancels is 0 ----
+
+cat >late.spec <<'END'
+model late
+coord z
+input u hold first, w hold first
+z'' + 0.4*z' + 9*z = u + 0.5*u(t - 0.25) + u'(t - 0.1) + w(t - 0.2)
+output z, v = z' + 2*u(t - 0.2), gone = u + u(t - 1/3) + u(t - 2/3), half = u(t - 0.5) + u(t - 1)
+step 1/60
+END
+"$plgen" --response 1:8:4 late.spec >csv 2>log && awk -F, '
+	function add(size, angle) { re += size * cos(angle); im += size * sin(angle) }
+	function check(column, pi) {
+		pi = 4 * atan2(1, 1)
+		angle = $(column + 1) * pi / 180
+		off = sqrt(($column * cos(angle) - re)^2 + ($column * sin(angle) - im)^2)
+		if (!(off < 1e-13 && angle <= pi && angle >= -pi)) {
+			print $1, column, $column, re, im
+			bad = 1
+		}
+		re = im = 0
+	}
+	NR > 1 {
+		w = 8 * atan2(1, 1) * $1
+		down = -log((9 - w^2)^2 + (0.4 * w)^2) / 2; turn = -atan2(0.4 * w, 9 - w^2)
+		add(exp(down), turn); add(exp(down) / 2, turn - w / 4)
+		add(w * exp(down), turn + 2 * atan2(1, 1) - w / 10); x = re; y = im; check(2)
+		re = -w * y; im = w * x; add(2, -w / 5); check(4)
+		if ($1 == 1 && $6 != 0 || $1 == 1 && $8 != 0) { print "not 0:", $6, $8; bad = 1 }
+		add(1, 0); add(1, -w / 3); add(1, -2 * w / 3); check(6)
+		add(1, -w / 2); add(1, -w); check(8)
+		add(exp(down), turn - w / 5); check(10)
+	} END { exit bad || NR != 5 }' csv >>log
+result $? 'delayed inputs'
+"$plgen" --response 1:8:4 --amplitude 1 late.spec >out 2>log
+[ $? -eq 1 ] && [ ! -s out ] && grep -q 'error: --amplitude does not go with delayed inputs' log
+result $? 'delayed inputs have no sweep of an amplitude'
+
 # ---- sweeps up and down, of models with clearances ----
 
 # swept MODEL SPEC BAND AMPLITUDE APART TOLERANCE: of SWEEPS, as above
@@ -327,6 +365,10 @@ at rest 'rest: q[1] = 0.5, q[2] = 0, z = -0.693147' "model m\ncoord q[2], z\ninp
 q'' + [2, -1; -1, 4]*q + [s; 2*s] = [1 + u; -0.5]\nz' + exp(z) = q[1]\noutput q[1], z" \
 	"model m\ncoord q[2], z\ninput u
 q'' + [2, -0.5; -1, 5]*q = [u; 0]\nz' + 0.5*z = q[1]\noutput q[1], z"
+at rest 'rest: x = 0' "model m\ncoord x\ninput u hold first
+x'' + 0.2*x' + 9.81*sin(x) = u + 0.5*u(t - 0.25) + u'(t - 0.1)*cos(x)\noutput x, late = u(t - 0.3) + x^2" \
+	"model m\ncoord x\ninput u hold first
+x'' + 0.2*x' + 9.81*x = u + 0.5*u(t - 0.25) + u'(t - 0.1)\noutput x, late = u(t - 0.3)"
 # Where the model's own motion is at t: x = 1/(1 + t); a mass that falls from 0.2 m by 10 m/s^2 onto a spring, which it
 # meets at t = 0.2 s
 bend="model m\ncoord x, y\ninput u\ninit x = 1, y = 1, y' = 1\ntolerance 1e-14

@@ -137,6 +137,20 @@ else
     tell("the response", isequal(size(r), [4, 2, 2]) && max(max(abs(r(:, :, 1) - direct))) < 1e-9, r(:, :, 1) - direct);
 end
 
+fid = fopen("late.spec", "w");
+fprintf(fid, "model late\ncoord x\ninput u\nx'' + 0.3*x' + x = u(t - 0.1) + 0.5*u\nstep 0.05\n");
+fclose(fid);
+late = plgen_model("late.spec");
+refuses("the state space of a delay", ["late: inputs are delayed, so it has no state space over them: it would " ...
+        "leave out u.delayed1; response counts them"], @() late.ss);
+s = 2i * pi * [0.1, 0.5];
+direct = (exp(-0.1 * s) + 0.5) ./ (s .^ 2 + 0.3 * s + 1);
+tell("the response to a delayed input", isequal(size(late.response([0.1, 0.5])), [2, 1, 2]) && ...
+     max(abs(late.response([0.1, 0.5])(1, 1, :)(:).' - direct)) < 1e-14, late.response([0.1, 0.5])(1, 1, :)(:).' - direct);
+bent = plgen_model(["model bent\ncoord x\ninput u\nx'' + 0.3*x' + sin(x) = u(t - 0.1) + 0.5*u\nstep 0.05\n"]);
+tell("that of its linear equations", max(abs(bent.response([0.1, 0.5], false, "rest")(1, 1, :)(:).' - direct)) < 1e-14, ...
+     bent.response([0.1, 0.5], false, "rest"));
+
 scaled = ["model scaled\nparam m = 2 \"kg\", k = 0.1 \"N/mm\"\ntunable k\ncoord x \"mm\"\nm*x'' + k*x = 0\n", ...
           "init x = 3 \"mm\"\nstep 0.01\n"];
 m = plgen_model(scaled, "k", 0.25);

@@ -221,8 +221,14 @@ refuses('tau beyond the step', 'tau is not in 0 .. h', lambda: model('sdcsf').at
 with open('late.spec', 'w') as late:
     late.write("model late\ncoord x\ninput u\nx'' + x = u(t - 0.1)\nstep 0.05\n")
 refuses('the state space of a delay',
-        'late: inputs are delayed, so it has no state space over them: it would leave out u.delayed1',
-        lambda: Model('late.spec').ss.A)
+        'late: inputs are delayed, so it has no state space over them: it would leave out u.delayed1; '
+        'response and frf count them', lambda: Model('late.spec').ss.A)
+if 'ss' in Model('late.spec').explain:
+    over = Model('late.spec').response([0.5, 2.5])
+    direct = np.exp(-0.2j * np.pi * np.array([0.5, 2.5])) / (1 - (2 * np.pi * np.array([0.5, 2.5])) ** 2)
+    case('the response to a delayed input', over.shape == (2, 2, 1) and np.abs(over[:, 0, 0] - direct).max() < 1e-14 and
+         np.abs(Model('late.spec').frf(np.pi)[0, 0] - direct[0]) < 1e-14 and
+         np.abs(np.sort(Model('late.spec').poles().imag) - [-1, 1]).max() < 1e-14, over[:, 0, 0] - direct)
 refuses('an input that is not there', "no input is called 'pusch'; did you mean 'push'?",
         lambda: Model('held.spec').run({'pusch': record[:5, 0], 'base': record[:5, 1]}), ValueError)
 refuses('a dict without an input', "the input 'base' has no samples; expected the inputs push, base",

@@ -41,6 +41,7 @@ class StateSpace:
         self.outputs: tuple[str, ...] = tuple(told.get('outputs', ()))
         self.discrete: StateSpace | None = None
         self.at = self.stability = ''
+        self._delays: list[dict[str, Any]] = told.get('delays', [])
         self.poles = np.empty(0, dtype=complex)
 
     def __iter__(self) -> Iterator[np.ndarray]:
@@ -57,13 +58,16 @@ class StateSpace:
         return self.C @ x + D
 
 
-def state_space(told: dict[str, Any], own: tuple[str, ...], loads: bool, name: str) -> StateSpace:
-    """Of --explain=json: over the inputs `own`, or over the others, which are loads."""
+def state_space(told: dict[str, Any], own: tuple[str, ...], loads: bool, name: str,
+                late: bool = False) -> StateSpace:
+    """Of --explain=json: over the inputs `own`, or over the others, which are loads. late: inputs as they were some
+    time ago are inputs, too, which come last."""
     ss = told['ss']
-    delayed = [name for name in ss['inputs'] if '.delayed' in name]
-    if delayed:
-        raise Error('{}: inputs are delayed, so it has no state space over them: it would leave out {}'.format(
-            name, ', '.join(delayed)))
+    delayed = [one['input'] for one in ss.get('delays', [])]
+    if delayed and not late and not loads:
+        raise Error('{}: inputs are delayed, so it has no state space over them: it would leave out {}; '
+                    'response and frf count them'.format(name, ', '.join(delayed)))
+    own += tuple(delayed)
     column = [i for i, name in enumerate(ss['inputs']) if (name in own) != loads]
     space = StateSpace(ss, column, tuple(told['states']))
     if ss['discrete']:
@@ -130,15 +134,18 @@ class Linear:
 
         at: of a model that is not linear, where: 'rest' (by default, with a warning that says so), 'now', 'x=0.1', or
         a dict of states; others are the initial ones."""
+        return self._space(loads, at, False, 4)
+
+    def _space(self: Any, loads: bool, at: Place, late: bool, above: int = 3) -> StateSpace:
         if self.explain['linear']:
-            return state_space(self.explain, self.inputs, loads, self.name)
+            return state_space(self.explain, self.inputs, loads, self.name, late)
         told, notes = self._explain(place(at, self))
-        space = state_space(told, self.inputs, loads, self.name)
+        space = state_space(told, self.inputs, loads, self.name, late)
         said = [line.partition(': note: ')[2] for line in notes.split('\n') if ': note: linearised ' in line]
         space.at = said[0] if said else 'linearised at ' + place(at, self)
         space.stability = told['linearised']['stability']
         if at is None:
-            warnings.warn('{}: not linear, and {}'.format(self.name, space.at), stacklevel=3)
+            warnings.warn('{}: not linear, and {}'.format(self.name, space.at), stacklevel=above)
         return space
 
     def linearise(self, at: Place = 'rest') -> StateSpace:
@@ -151,11 +158,19 @@ class Linear:
 
     def poles(self, at: Place = None) -> np.ndarray:
         """Poles [1/s], each as often as it is there."""
-        return self.state_space(at=at).poles
+        return self._space(False, at, True).poles
 
-    def response(self, f: Any, loads: bool = False, at: Place = None) -> np.ndarray:
-        """Outputs over inputs at f [Hz], complex: f's shape x outputs x inputs."""
-        return self.state_space(loads, at).response(f)
+    def response(self: Any, f: Any, loads: bool = False, at: Place = None) -> np.ndarray:
+        """Outputs over inputs at f [Hz], complex: f's shape x outputs x inputs; u(t - d) is e^{-2 pi i f d} u."""
+        space = self._space(loads, at, True)
+        over = space.response(f)
+        if loads:
+            return over
+        f = np.asarray(f, dtype=float)[..., np.newaxis]
+        for late in space._delays:
+            turned = over[..., space.inputs.index(late['input'])] * np.exp(-2j * np.pi * f * late['delay'])
+            over[..., space.inputs.index(late['of'])] += turned
+        return over[..., :len(self.inputs)]
 
     def frf(self, w: Any, loads: bool = False, at: Place = None) -> np.ndarray:
         """The same at w [rad/s]."""
