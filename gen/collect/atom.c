@@ -155,7 +155,6 @@ static struct form *form_of_atom(struct collector *c, const struct node *node, s
 	return form_unit((struct basis){ .kind = BASIS_ATOM, .index = (*link)->index, .atom = *link });
 }
 
-<<<<<<< HEAD
 static const struct form **shared(struct collector *c, int count, const struct form *const *operand)
 {
 	const struct form **list = ARRAY(const struct form *, count);
@@ -165,9 +164,6 @@ static const struct form **shared(struct collector *c, int count, const struct f
 }
 
 static struct form *new_atom(struct collector *c, const struct node *node, struct atom wanted, int count,
-=======
-struct form *kept_operands(struct collector *c, const struct node *node, struct atom wanted, int count,
->>>>>>> e0a21c99 (collect, model: an atom of other operands is made in one place; walks by terms_within; one place of a velocity among terms: 34 lines fewer)
 			     const struct form *const *operand)
 {
 	wanted.operands = count;
@@ -175,7 +171,6 @@ struct form *kept_operands(struct collector *c, const struct node *node, struct 
 	return form_of_atom(c, node, wanted);
 }
 
-<<<<<<< HEAD
 /* One after the other are asked for all components of a system, whose n (n + 1) operands they share. */
 struct form *kept_component(struct collector *c, const struct node *node, struct atom wanted, int count,
 			    const struct form *const *operand)
@@ -193,8 +188,6 @@ struct form *kept_component(struct collector *c, const struct node *node, struct
 	return form_of_atom(c, node, wanted);
 }
 
-=======
->>>>>>> e0a21c99 (collect, model: an atom of other operands is made in one place; walks by terms_within; one place of a velocity among terms: 34 lines fewer)
 struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param)
 {
 	return form_of_atom(c, node, (struct atom){ .kind = ATOM_PARAM, .param = param });
@@ -401,9 +394,9 @@ struct form *kept_reciprocal(struct collector *c, const struct node *node, const
 	} else if (x->terms == 1) {             /* 1/(2 x) = 0.5 (1/x) */
 		const struct form *unit = form_unit(x->term[0].basis);
 		mpq_inv(value, x->term[0].factor);
-		form = form_scale(kept_operands(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &unit), value);
+		form = form_scale(new_atom(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &unit), value);
 	} else {
-		form = kept_operands(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &x);
+		form = new_atom(c, node, (struct atom){ .kind = ATOM_RECIPROCAL }, 1, &x);
 	}
 	return form;
 }
@@ -455,7 +448,7 @@ struct form *kept_power(struct collector *c, const struct node *node, const stru
 {
 	const struct form *operand[] = { base, exponent };
 	if (!is_constant(exponent))
-		return kept_operands(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
+		return new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
 	RATIONAL e = ZERO;
 	constant_value(c, exponent, e);
 	bool whole = mpz_cmp_ui(mpq_denref(e), 1) == 0 && mpz_cmpabs_ui(mpq_numref(e), LIMIT_EXPONENT) <= 0;
@@ -466,7 +459,7 @@ struct form *kept_power(struct collector *c, const struct node *node, const stru
 		form = kept_whole_power(c, node, base, (unsigned)mpz_get_ui(mpq_numref(e)));    /* its size */
 		form = mpq_sgn(e) < 0 ? kept_reciprocal(c, node, form) : form;
 	} else {
-		form = kept_operands(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
+		form = new_atom(c, node, (struct atom){ .kind = ATOM_POWER }, 2, operand);
 	}
 	return form;
 }
@@ -505,7 +498,7 @@ struct form *kept_call(struct collector *c, const struct node *node, enum functi
 			      : piecewise(c, call_at(node, function, count), x);
 	if (function >= FN_DEADZONE && function < FN_FRICTION)
 		check_breakpoints(c, node, x);
-	return kept_operands(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count,
+	return new_atom(c, node, (struct atom){ .kind = ATOM_CALL, .function = function }, count,
 			(const struct form *const *)x);
 }
 
@@ -515,8 +508,7 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 	struct form *difference = form_sum(a, b, true);
 	const struct form *operand[] = { a, b };
 	if (!is_decided(c, 1, &difference))
-		return kept_operands(c, node, (struct atom){ .kind = ATOM_COMPARE, .comparison = comparison }, 2,
-				     operand);
+		return new_atom(c, node, (struct atom){ .kind = ATOM_COMPARE, .comparison = comparison }, 2, operand);
 	RATIONAL value = ZERO;
 	mpq_set_ui(value, compare_values(comparison, order_now(c, node, difference, NEW(struct form))), 1);
 	return form_constant(value);
@@ -535,5 +527,5 @@ struct form *kept_choice(struct collector *c, const struct node *node, const str
 		}
 		return form_sum(first ? a : b, NEW(struct form), false);
 	}
-	return kept_operands(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
+	return new_atom(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
 }
