@@ -72,8 +72,8 @@ void open_function(const struct emitter *e, const char *note, const char *layout
 
 void close_function(const struct emitter *e, const char *unread)
 {
-	for (size_t length; *unread; unread += length, unread += strspn(unread, " ")) {
-		length = strcspn(unread, " ");
+	for (size_t length; *(unread += strspn(unread, ", ")); unread += length) {
+		length = strcspn(unread, ", ");
 		say(e, "    (void)%.*s;\n", (int)length, unread);
 	}
 	say(e, "}\n");

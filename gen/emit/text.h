@@ -43,7 +43,7 @@ void say(const struct emitter *e, const char *layout, ...) __attribute__((format
 /* the same as text */
 const char *spell(const struct emitter *e, const char *layout, ...) __attribute__((format(printf, 2, 3)));
 /* Behind a blank line and the note, NULL: none, what is before the body, which begins; the end of it, before which
- * stand the names that nothing may have read, blanks between */
+ * stand the names that nothing may have read, blanks or commas between */
 void open_function(const struct emitter *e, const char *note, const char *layout, ...)
 	__attribute__((format(printf, 3, 4)));
 void close_function(const struct emitter *e, const char *unread);

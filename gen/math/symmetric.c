@@ -46,24 +46,13 @@ static bool cholesky(struct rotating *r, int all, const mpq_t *M)
 	return true;
 }
 
-/* column <- L^-1 column, its entries `stride` apart */
-static void forward(struct rotating *r, mpfr_t *column, int stride)
+/* column <- L^-1 column, or L^-T column, its entries `stride` apart */
+static void divide_by(struct rotating *r, bool transposed, mpfr_t *column, int stride)
 {
-	for (int i = 0; i < r->n; i++) {
-		for (int k = 0; k < i; k++) {
-			mpfr_mul(r->y, r->L[i * r->n + k], column[k * stride], MPFR_RNDN);
-			mpfr_sub(column[i * stride], column[i * stride], r->y, MPFR_RNDN);
-		}
-		mpfr_div(column[i * stride], column[i * stride], r->L[i * r->n + i], MPFR_RNDN);
-	}
-}
-
-/* column <- L^-T column */
-static void backward(struct rotating *r, mpfr_t *column, int stride)
-{
-	for (int i = r->n - 1; i >= 0; i--) {
-		for (int k = i + 1; k < r->n; k++) {
-			mpfr_mul(r->y, r->L[k * r->n + i], column[k * stride], MPFR_RNDN);
+	for (int count = 0; count < r->n; count++) {
+		const int i = transposed ? r->n - 1 - count : count;
+		for (int k = transposed ? i + 1 : 0; k < (transposed ? r->n : i); k++) {
+			mpfr_mul(r->y, r->L[transposed ? k * r->n + i : i * r->n + k], column[k * stride], MPFR_RNDN);
 			mpfr_sub(column[i * stride], column[i * stride], r->y, MPFR_RNDN);
 		}
 		mpfr_div(column[i * stride], column[i * stride], r->L[i * r->n + i], MPFR_RNDN);
@@ -148,9 +137,9 @@ static bool solve_block(struct rotating *r, int all, const mpq_t *M, const mpq_t
 			mpfr_set_ui(r->V[i * n + j], i == j, MPFR_RNDN);
 		}
 	for (int j = 0; j < n; j++)
-		forward(r, r->A + j, n);
+		divide_by(r, false, r->A + j, n);
 	for (int i = 0; i < n; i++)
-		forward(r, r->A + i * n, 1);
+		divide_by(r, false, r->A + i * n, 1);
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < i; j++) {
 			mpfr_add(r->x, r->A[i * n + j], r->A[j * n + i], MPFR_RNDN);
@@ -161,7 +150,7 @@ static bool solve_block(struct rotating *r, int all, const mpq_t *M, const mpq_t
 	if (!rotate_to_diagonal(r))
 		return false;
 	for (int j = 0; j < n; j++)
-		backward(r, r->V + j, n);
+		divide_by(r, true, r->V + j, n);
 	return true;
 }
 

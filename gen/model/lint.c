@@ -436,32 +436,17 @@ static void check_symmetry(const struct lint *lint)
 /* Rows of n x width with the force in the last column: the row that is left with nothing but a force; -1: none */
 static int unopposed_row(int n, int width, mpq_t *A)
 {
-	int *row = ARRAY(int, n), rank = 0, listed = 0;
-	RATIONAL factor = ZERO;
+	struct echelon e = echelon_new(width);
 	for (int with = 0; with < 2; with++)    /* what has a force comes last, so that it is what is left */
-		for (int i = 0; i < n; i++)
-			if ((mpq_sgn(A[i * width + width - 1]) != 0) == with)
-				row[listed++] = i;
-	for (int column = 0; column < width - 1 && rank < n; column++) {
-		int pivot = rank;
-		while (pivot < n && mpq_sgn(A[row[pivot] * width + column]) == 0)
-			pivot++;
-		if (pivot == n)
-			continue;
-		int found = row[pivot];
-		row[pivot] = row[rank];
-		row[rank] = found;
-		for (int i = rank + 1; i < n; i++) {
-			if (mpq_sgn(A[row[i] * width + column]) == 0)
+		for (int i = 0; i < n; i++) {
+			mpq_t *row = A + i * width;
+			const int rank = e.rank;
+			if ((mpq_sgn(row[width - 1]) != 0) != with)
 				continue;
-			mpq_div(factor, A[row[i] * width + column], A[found * width + column]);
-			rational_subtract_row(width, A + row[i] * width, A + found * width, factor);
+			echelon_add(&e, row);
+			if (e.rank > rank && e.pivot[rank] == width - 1)
+				return i;
 		}
-		rank++;
-	}
-	for (int i = rank; i < n; i++)
-		if (mpq_sgn(A[row[i] * width + width - 1]) != 0)
-			return row[i];
 	return -1;
 }
 

@@ -96,12 +96,14 @@ static void set_unit(struct symbol *symbol, const struct unit *unit)
 /* param: param NAME = expression [ unit ] { , NAME = expression [ unit ] };   let: let NAME = expression [ unit ] */
 static void read_definitions(struct parser *p, enum symbol_kind kind)
 {
+	const bool matrix = kind == SYMBOL_MATRIX;
 	do {
-		struct token name = expect_new_name(p, "a name");
+		struct token name = expect_new_name(p, matrix ? "the name of a matrix" : "a name");
 		expect_op(p, "=", "'='");
-		struct node *value = read_expression(p);
+		const bool file = matrix && p->token.kind == TOKEN_STRING;
+		struct node *value = file ? read_file_name(p) : read_expression(p);
 		const struct unit *unit = take_unit(p, value);
-		value = kind == SYMBOL_PARAM ? given_value(p, name.name, value, unit) : with_unit(value, unit);
+		value = kind == SYMBOL_LET ? with_unit(value, unit) : given_value(p, name.name, value, unit);
 		struct symbol *symbol = declare(p, name, kind, false);
 		symbol->value = value;
 		set_unit(symbol, unit);
@@ -148,17 +150,7 @@ struct node *read_file_name(struct parser *p)
 /* matrix: matrix NAME = ( STRING | expression ) [ unit ] { , ... } */
 void read_matrix_statement(struct parser *p)
 {
-	do {
-		struct token name = expect_new_name(p, "the name of a matrix");
-		expect_op(p, "=", "'='");
-		struct node *value = p->token.kind == TOKEN_STRING ? read_file_name(p) : read_expression(p);
-		const struct unit *unit = take_unit(p, value);
-		value = given_value(p, name.name, value, unit);
-		struct symbol *symbol = declare(p, name, SYMBOL_MATRIX, false);
-		symbol->value = value;
-		set_unit(symbol, unit);
-	} while (take_op(p, ","));
-	expect_end(p);
+	read_definitions(p, SYMBOL_MATRIX);
 }
 
 /* two-mass as two_mass */

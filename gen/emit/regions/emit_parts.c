@@ -270,23 +270,6 @@ static void emit_linear_loop(const struct emitter *part, const double *full)
 	    part->step->layout.size, part->system->states);
 }
 
-/* What a function of a part is given; not all of it may be read. */
-static const char *given_names(const struct emitter *part)
-{
-	const char *text = given_inputs(part) ? "u" : "";
-	for (int l = 0; l < part->system->loads; l++) {
-		const struct load *load = &part->system->load[l];
-		const bool polynomial = is_polynomial(load->forcing);
-		if (part->step->layout.load[l] < 0)
-			continue;
-		if (polynomial && load->powers > 1)
-			text = format("%s t", text);
-		if (!polynomial || load->powers > 2)
-			text = format("%s load%d", text, l + 1);
-	}
-	return text + strspn(text, " ");
-}
-
 static void emit_linear_rows(const struct emitter *part, const double *full)
 {
 	int size = part->step->layout.size, states = part->system->states;
@@ -341,7 +324,7 @@ static void emit_linear_step(const struct emitter *part)
 		add_summand(&size, format("pl_magnitude(s->y[%d])", place_of_state(part, i)));
 	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
 	    sum_of(&size, 10), shortest(part->model->request.single ? 0x1p120 : 0x1p1000));
-	close_function(part, given_names(part));
+	close_function(part, given_text(part, false));
 }
 
 static void emit_switched_step(const struct emitter *part)
