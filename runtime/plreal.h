@@ -265,6 +265,9 @@ typedef struct pl_events {
     const pl_conflict *conflict;
     PL_REAL h;                /* step [s], the unit of time of c */
     int max_events;
+    /* holds x states and impacts x states: the watch of an entry of back and place_back that depends on the state, -1:
+     * the entry itself; NULL: none does */
+    const int *back_watch, *place_watch;
 } pl_events;
 
 /* Impacts that follow each other in a step. */

@@ -164,27 +164,37 @@ static int has_listed(const pl_events *m, pl_instant *at, int loses, real time, 
 
 /* ---- what is held ---- */
 
-static void take(const pl_instant *at, int states, const real *back, real times)
+/* From the states: `times` the numbers of a row, or what is watched in their place */
+static void take(const pl_events *m, pl_instant *at, int row, const real *back, const int *moving, real times)
 {
+    const ptrdiff_t first = (ptrdiff_t)row * m->states;
     int i;
-    for (i = 0; i < states; i++) {
-        if (back[i] < 0 || back[i] > 0) {
-            at->y[i] -= back[i] * times;
+    for (i = 0; i < m->states; i++) {
+        const int watch = moving ? moving[first + i] : -1;
+        const real factor = watch < 0 ? back[first + i] : value_of(m, at, watch);
+        if (factor < 0 || factor > 0) {
+            at->y[i] -= factor * times;
             at->low[i] = 0;
         }
     }
+}
+
+static void put_on(const pl_events *m, pl_instant *at, int k)
+{
+    take(m, at, k, m->place_back, m->place_watch, value_of(m, at, m->impact[k].place));
+    renew(m, at);
 }
 
 /* Puts what is held where it is held, but for rounding. */
 static void put_back(const pl_events *m, pl_instant *at, int hold)
 {
     const pl_hold *h = &m->hold[hold];
-    take(at, m->states, m->back + (ptrdiff_t)hold * m->states, value_of(m, at, h->velocity));
+    take(m, at, hold, m->back, m->back_watch, value_of(m, at, h->velocity));
     if (h->impact >= 0) {
-        take(at, m->states, m->place_back + (ptrdiff_t)h->impact * m->states,
-             value_of(m, at, m->impact[h->impact].place));
+        put_on(m, at, h->impact);
+    } else {
+        renew(m, at);
     }
-    renew(m, at);
 }
 
 /* Whether what is held has moved by more than rounding */
@@ -333,12 +343,6 @@ static void jump(const pl_events *m, pl_instant *at, int k)
 static void stop(const pl_events *m, pl_instant *at, int k)
 {
     assign(m, at, m->impact[k].still, m->impact[k].jumps);
-}
-
-static void put_on(const pl_events *m, pl_instant *at, int k)
-{
-    take(at, m->states, m->place_back + (ptrdiff_t)k * m->states, value_of(m, at, m->impact[k].place));
-    renew(m, at);
 }
 
 static void follow(const pl_events *m, pl_instant *at, int jumped)

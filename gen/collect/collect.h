@@ -54,6 +54,7 @@ struct form *form_difference(const struct form *a, const struct form *b);
 void form_add_to(struct form *sum, const struct form *part, mpq_srcptr factor);
 void form_add_basis(struct form *sum, struct basis basis, mpq_srcptr factor);
 void form_free(struct form *form);                          /* which nothing else holds */
+bool holds_atom(const struct form *form);
 const struct form_term *form_find(const struct form *form, const struct basis *basis); /* NULL: it does not occur */
 /* The terms of a form (NULL: there are none), each followed by those of its atom's operands, unless `seen`, per atom,
  * is set; then it is. NULL ends them. */

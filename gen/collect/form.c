@@ -113,6 +113,11 @@ static int find_place(const struct form *form, const struct basis *basis, bool *
 	return low;
 }
 
+bool holds_atom(const struct form *form)
+{
+	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
+}
+
 const struct form_term *form_find(const struct form *form, const struct basis *basis)
 {
 	bool found;

@@ -79,11 +79,6 @@ static bool same_equations(const struct building *b, const struct segment_equati
 	return true;
 }
 
-static bool holds_atom(const struct form *form)
-{
-	return form->terms > 0 && form->term[form->terms - 1].basis.kind == BASIS_ATOM;
-}
-
 /* Before equations belong to coordinates: what they take */
 struct demands { bool linear, piecewise; }; /* linear equations do; switching between such */
 
@@ -256,6 +251,11 @@ static void find_obstacle(void *context)
 		model->nonlinear.obstacle = changing_factor(b, s);
 		why = format("has a factor that changes at t = %s", readable_text(model->system.change[s - 1]));
 	}
+	if (!model->nonlinear.obstacle && curved_guard(b)) {
+		model->nonlinear.obstacle = curved_guard(b)->guard->child[0];
+		model->nonlinear.why = "is the guard of a stop, and not linear";
+		return;
+	}
 	if (!model->nonlinear.obstacle)
 		return;
 	rewrite = rewrite_of(model->nonlinear.obstacle);
@@ -281,7 +281,7 @@ static bool goes_by_series(const struct building *b)
 	const struct model *model = b->model;
 	bool chosen = !model->request.scheme_at.source && !is_piecewise_linear(b);
 	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
-	       !b->request->loads_left && !model->equations.moving_mass;
+	       !b->request->loads_left;
 }
 
 static bool goes_by_regions(const struct building *b)

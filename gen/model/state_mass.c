@@ -116,8 +116,8 @@ static struct form *remaining(const struct solving *w, int row)
 	for (int i = 0; i < residual->terms; i++) {
 		const struct form_term *term = &residual->term[i];
 		const struct form *alone = form_unit(term->basis);
-		if (is_highest(&w->b->model->frame, &term->basis))
-			continue;
+		if (is_highest(&w->b->model->frame, &term->basis) || is_friction(term->basis.atom))
+			continue;               /* friction is added by what holds: contacts.c */
 		if (atom_of_highest(alone))
 			form_add_to(rest, form_at(w->rest, alone), term->factor);
 		else
@@ -296,6 +296,81 @@ void check_mass_at_start(struct building *b)
 		statement_guard(check_mass_of, &work);
 	}
 	mpq_clear(j.t);
+}
+
+/* ---- forces on mechanisms ---- */
+
+static const struct linear_system *system_of_coord(const struct segment_equations *s, int coord, int *row)
+{
+	for (int i = 0; i < s->masses; i++) {
+		const struct written_system *written = s->mass[i].system.written;
+		for (*row = 0; *row < written->rows; ++*row)
+			if (written->highest[*row].index == coord)
+				return &s->mass[i].system;
+	}
+	return NULL;
+}
+
+bool has_moving_mass(const struct segment_equations *s, int coord)
+{
+	int row;
+	return system_of_coord(s, coord, &row) != NULL;
+}
+
+const char *unsymmetric_mass(const struct building *b, const struct form *const *force)
+{
+	int row;
+	for (int k = 0; k < b->model->n; k++) {
+		const struct linear_system *e = system_of_coord(b->full, k, &row);
+		for (int j = 0; e && force[b->owner[k]]->terms && j < e->n * e->n; j++)
+			if (!same_form(e->M[j], e->M[j % e->n * e->n + j / e->n]))
+				return b->model->names.coord[k];
+	}
+	return NULL;
+}
+
+mpq_t *inverse_masses(const struct building *b, const struct segment_equations *s)
+{
+	struct linear shape = linear_like(&b->model->system);
+	const int n = shape.n;
+	int column;
+	mpq_t *inverse = rationals((size_t)(n * n)), *matrix[] = { shape.K, shape.C, shape.M };
+	for (int i = 0; i < n; i++)
+		for (int k = 0; k < s->residual[i].form->terms; k++) {
+			const struct form_term *term = &s->residual[i].form->term[k];
+			if (term->basis.kind == BASIS_COORD)
+				mpq_set(matrix[term->basis.order][i * n + term->basis.index], term->factor);
+		}
+	if (!leading_inverse(&shape, inverse, &column))
+		abandon();                      /* told with the equations */
+	return inverse;
+}
+
+static struct form *acceleration_in_block(struct building *b, const struct linear_system *e, int row,
+					  const struct form *const *force)
+{
+	const struct form **f = ARRAY(const struct form *, e->n);
+	for (int i = 0; i < e->n; i++)
+		f[i] = force[b->owner[e->written->highest[i].index]];
+	return kept_solution(&b->collector, b->model->equations.moving_mass,
+			     &(struct linear_system){ e->n, e->M, f, NULL }, row);
+}
+
+const struct form **accelerations_by(struct building *b, const struct form *const *force)
+{
+	const int n = b->model->n;
+	const mpq_t *inverse = inverse_masses(b, b->full);
+	const struct form **by = ARRAY(const struct form *, n);
+	for (int j = 0; j < n; j++) {
+		int row;
+		const struct linear_system *e = system_of_coord(b->full, j, &row);
+		struct form *sum = NEW(struct form);
+		for (int i = 0; i < n && !e; i++)
+			if (mpq_sgn(inverse[j * n + i]) != 0)
+				form_add_to(sum, force[i], inverse[j * n + i]);
+		by[j] = e ? acceleration_in_block(b, e, row, force) : sum;
+	}
+	return by;
 }
 
 const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row)

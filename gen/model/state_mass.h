@@ -4,6 +4,7 @@
 #define PLGEN_MODEL_STATE_MASS_H
 
 #include <stdbool.h>
+#include <gmp.h>
 
 struct building;
 struct form;
@@ -17,5 +18,14 @@ void solve_for_highest(struct building *b, struct segment_equations *s);
 const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
 void jacobian_of_motion(void *jacobian);    /* a struct jacobian, of M^-1 f as numbers alone */
 void check_mass_at_start(struct building *b);               /* that M is regular there */
+/* Whether the equation of its highest derivative has a factor of the state */
+bool has_moving_mass(const struct segment_equations *s, int coord);
+/* The first coordinate on whose equation a force acts and whose mass matrix is not symmetric; NULL: there is none.
+ * force: per residual of the equations for all time */
+const char *unsymmetric_mass(const struct building *b, const struct form *const *force);
+/* Of highest derivatives that have constant factors, as the equations have them; n x n */
+mpq_t *inverse_masses(const struct building *b, const struct segment_equations *s);
+/* M^-1 force per coordinate: what it adds to the highest derivatives */
+const struct form **accelerations_by(struct building *b, const struct form *const *force);
 
 #endif

@@ -391,7 +391,7 @@ static void check_need(const struct building *b, bool left)
 		say_warning(scheme_place(b), NULL,
 			    "scheme %s is of first order in h: this model is linear, and exact has no error",
 			    scheme->name);
-	else if (scheme->leaves && is_linear(b))
+	else if (scheme->leaves && is_linear(b) && !curved_guard(b))
 		say_warning(scheme_place(b), NULL,
 			    left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
 				 : "scheme %s has nothing to do: this model is linear, and exact covers it",
@@ -496,6 +496,7 @@ void warn(struct building *b)
 	bool left = model->remainder.force_columns > 0;
 	struct jacobian j = { .b = b };
 	lint(b);
+	left = left || curved_guard(b);
 	if (left && model->nonlinear.obstacle && b->spec->required.needs == 0)     /* else the scheme is chosen */
 		say_note(model->nonlinear.obstacle->start, "scheme %s%s, not exact: '%s' %s%s",
 			 scheme_name(model->scheme),

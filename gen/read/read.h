@@ -182,8 +182,8 @@ struct when {                       /* when guard: jump, jump;  or a stop that b
 	struct node *guard;         /* a comparison, < <= > or >= */
 	int jumps;
 	struct state_jump *jump;
-	/* of stop: between two coordinates, NULL: the ground; what comes up to `gap` is from - to. restitution NULL: it
-	 * is no stop */
+	/* of stop: between two coordinates, NULL: the ground; what comes up to `gap` is from - to; both NULL: between
+	 * expressions. restitution NULL: it is no stop */
 	struct node *from, *to, *gap, *restitution;
 };
 struct initial {

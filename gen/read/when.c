@@ -83,23 +83,38 @@ static struct node *difference(struct node *a, struct node *b)
 	return sum;
 }
 
+/* A coordinate or any expression of coordinates; NULL: the ground */
+static struct node *read_end(struct parser *p)
+{
+	return take_word(p, "ground") ? NULL : read_expression(p);
+}
+
+static bool is_plain_coordinate(const struct node *node)
+{
+	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
+	return symbol && symbol->kind == SYMBOL_COORD && node->primes == 0 && (!symbol->length || node->component);
+}
+
 static bool same_place(const struct node *a, const struct node *b)
 {
 	return a == b || (a && b && a->symbol == b->symbol && a->component == b->component);
 }
 
-/* stop: stop between coordinate , coordinate at expression restitution expression. What comes up to it is the first
- * less the second. */
+/* stop: stop between expression , expression at expression restitution expression. What comes up to it is the first
+ * less the second; coordinates alone are kept, whose equations the force acts on. */
 void read_stop(struct parser *p)
 {
 	struct when when = { .at = { p->lexer.source, p->statement }, .part = p->part };
 	expect_word(p, "between");
 	struct token first = p->token;
-	when.from = read_coordinate(p, true);
+	struct node *from = read_end(p);
 	expect_op(p, ",", "','");
-	when.to = read_coordinate(p, true);
-	if (same_place(when.from, when.to))
+	struct node *to = read_end(p);
+	const bool coordinates = (!from || is_plain_coordinate(from)) && (!to || is_plain_coordinate(to));
+	if (coordinates && same_place(from, to))
 		error(first.at, NULL, "it acts between a coordinate and itself");
+	when.from = coordinates ? from : NULL;
+	when.to = coordinates ? to : NULL;
 	expect_word(p, "at");
 	when.gap = read_quantity(p);
 	expect_word(p, "restitution");
@@ -108,7 +123,7 @@ void read_stop(struct parser *p)
 	when.end = p->end;
 	when.guard = node_new(NODE_COMPARE, first.at);
 	when.guard->comparison = CMP_GE;
-	add_child(when.guard, difference(when.from, when.to), false, first.at);
+	add_child(when.guard, difference(from, to), false, first.at);
 	add_child(when.guard, when.gap, false, first.at);
 	when.guard->start = first.at;
 	when.guard->end = p->end;

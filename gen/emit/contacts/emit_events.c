@@ -53,6 +53,21 @@ static void emit_rows(const struct emitter *e, const char *name, const char *not
 	emit_array(e, note, name, 2, size, value, NULL);
 }
 
+/* What of these rows the state changes: watches, -1 for the numbers; kind as there */
+static void emit_row_watches(const struct emitter *e, const char *name, int rows, int kind)
+{
+	const struct contacts *c = contacts(e);
+	const int states = e->system->states;
+	int *row = ARRAY(int, (size_t)((rows > 0 ? rows : 1) * states));
+	if (!c->moves)
+		return;
+	for (int i = 0; i < rows * states; i++)
+		row[i] = watch_or_none((kind ? c->series_impact[i / states].back_watch
+					     : c->hold[i / states].back_watch)[i % states]);
+	say(e, "\n/* The same where the state changes it: watches, -1: the numbers above */\n");
+	emit_int_list(e, name, rows * states, row);
+}
+
 static void emit_holds(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
@@ -67,6 +82,7 @@ static void emit_holds(const struct emitter *e)
 	say(e, "\n/* What is held: expression, interval; watches: its velocity, what lets it go down, up; impact */\n");
 	emit_integer_rows(e, "pl_hold", format("event_hold[%d]", rows), rows, 6, c->holds ? row : none);
 	emit_rows(e, "event_back", "Of each: what is taken from the states for a velocity of 1", c->holds, 0);
+	emit_row_watches(e, "event_back_watch", c->holds, 0);
 }
 
 static void emit_series_impacts(const struct emitter *e)
@@ -85,6 +101,7 @@ static void emit_series_impacts(const struct emitter *e)
 	}
 	say(e, "%s};\n", c->series_impacts > 0 ? "" : "    {0, 0, 0, -1, 0, 0, 0, 0, 0, 0.0, 1.0}\n");
 	emit_rows(e, "event_place", "Of each: what is taken from the states for a guard of 1", c->series_impacts, 1);
+	emit_row_watches(e, "event_place_watch", c->series_impacts, 1);
 	int *state = ARRAY(int, (size_t)c->assignments), *value = ARRAY(int, (size_t)c->assignments);
 	for (int i = 0; i < c->assignments; i++) {
 		state[i] = c->assignment[i].state;
@@ -100,8 +117,9 @@ static void emit_events(const struct emitter *e, const char *name, const char *s
 	say(e, "static const pl_events $n_%s = {\n"
 	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_impacts,\n"
 	       "    $n_event_place[0],\n"
-	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS\n"
-	       "};\n", name, switching, watch, c->holds, c->series_impacts, c->conflicts);
+	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS,\n",
+	    name, switching, watch, c->holds, c->series_impacts, c->conflicts);
+	say(e, c->moves ? "    $n_event_back_watch, $n_event_place_watch\n};\n" : "    NULL, NULL\n};\n");
 }
 
 void emit_event_tables(const struct emitter *e)

@@ -3,8 +3,9 @@
  * holds something and what lets it go as forms. */
 #include "model/building.h"
 #include "model/capability.h"
+#include "model/state_mass.h"
 #include "contacts.h"
-#include "friction.h"
+#include "inner.h"
 
 /* Its index; -1: it is none */
 static int drag_of(const struct model *model, const struct atom *atom)
@@ -34,7 +35,8 @@ static void add_drag(struct building *b, const struct atom *a)
 	for (int i = 1; i < a->operands; i++)
 		check_force(a->node->child[i], a->operand[i], start, NULL);
 	*MORE(model->contacts.drag, model->contacts.drags) =
-		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1] };
+		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1], NULL };
+	find_moving_drag(b, &model->contacts.drag[model->contacts.drags - 1]);
 }
 
 /* Friction that a function, a product or other friction has for an argument */
@@ -51,7 +53,7 @@ static void find_drags(struct building *b)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	for (int i = 0; i < b->model->n; i++) {
-		const struct form *form = b->full->residual[i].form;
+		const struct form *form = residual_as_written(b->full, b->owner, i);
 		for (int k = 0; k < form->terms; k++) {
 			const struct atom *a = form->term[k].basis.atom;
 			if (!a)
@@ -113,7 +115,9 @@ void find_contacts(struct building *b)
 {
 	for (int i = 0; i < b->model->contacts.impacts; i++) {
 		struct impact *impact = &b->model->contacts.impact[i];
-		if (impact->bounces)
+		if (impact->moves)
+			find_moving_impact(b, impact);
+		else if (impact->bounces)
 			impact->in->press = rate_of_form(b, impact->in->speed);
 	}
 	find_drags(b);

@@ -7,6 +7,11 @@
 #include "model/model.h"
 #include "model/regions/regions.h"
 
+struct moving_contact {             /* of a velocity: its direction or the mass matrix depends on the state */
+	const struct form **gradient; /* per coordinate: factor of its velocity in it */
+	const struct form **push;   /* per coordinate: what 1 of its force takes from the highest derivative */
+	double *sample;             /* the gradient somewhere: by that it is seen which depend on each other */
+};
 struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */
 	int state;
 	struct form *form;
@@ -20,6 +25,7 @@ struct impact_law {                 /* what an impact is in one segment of time 
 	mpq_t restitution;          /* of a bounce: e */
 	mpq_t gap;                  /* of a stop, as a number */
 	mpq_t *direction;           /* d, per coordinate */
+	struct moving_contact *moving; /* in its place; there are no jumps then; NULL: d is constant */
 	struct jump *still;         /* its jumps if e were 0 */
 	struct output *speed_row;
 	int function;               /* its guard is a multiple of this one, less a breakpoint, */
@@ -30,6 +36,7 @@ struct impact {                     /* of `when`, or of a stop */
 	const struct when *when;
 	/* v -> v - (1 + e) d s, s the speed: a bounce, which may come to rest; else the jump is any other */
 	bool bounces;
+	bool moves;                 /* d depends on the state */
 	struct impact_law *in;      /* per segment of time of the model */
 };
 
@@ -61,6 +68,7 @@ struct drag {
 	const struct atom *atom;
 	const struct form *velocity, *rate; /* v, and its derivative; that has highest derivatives */
 	const struct form *force, *rest;    /* F, and up to what it sticks */
+	struct moving_contact *moving; /* NULL: what its force does is constant */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;
@@ -86,6 +94,11 @@ void place_impact_loads(struct building *b, const struct switching *s);
 void build_impact_rows(struct building *b, struct switching *s);
 /* Why a scheme cannot treat friction or impacts */
 _Noreturn void report_no_events(const struct building *b, struct place at);
+
+/* ---- moving.c: contacts of mechanisms ---- */
+
+const struct when *curved_guard(const struct building *b);     /* the first that is not linear; NULL: there is none */
+bool is_moved_by(const struct impact *impact, int coord);      /* a bounce changes its velocity */
 
 /* ---- events.c: what is held in regions, and what begins there ---- */
 

@@ -6,6 +6,7 @@
  * Filippov (Differential Equations with Discontinuous Righthand Sides, 1988). */
 #include "inner.h"
 #include "model/building.h"
+#include "model/state_mass.h"
 
 /* ---- is there any? ---- */
 
@@ -25,7 +26,7 @@ static const struct atom *first_friction(const struct building *b)
 	const struct atom *found = NULL;
 	for (int s = 0; s < b->model->system.segments; s++)
 		for (int i = 0; i < b->model->n && !found; i++)
-			found = friction_in(b->segment_equations[s].residual[i].form, seen);
+			found = friction_in(residual_as_written(&b->segment_equations[s], b->owner, i), seen);
 	return found;
 }
 

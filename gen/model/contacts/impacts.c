@@ -3,8 +3,9 @@
  * -e s, along one direction, v -> v - (1 + e) d s, is a bounce; after infinitely many of them in finite time, or after
  * one where e is 0, its contact rests. */
 #include "model/building.h"
-#include "friction.h"
+#include "inner.h"
 #include "model/capability.h"
+#include "model/state_mass.h"
 #include "model/tunable/tuning.h"
 
 /* ---- guards and jumps as forms ---- */
@@ -92,8 +93,10 @@ static void collect_impact(void *context)
 	if (when->restitution)
 		check_stop(b, when, impact_law->restitution, impact_law->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
-	check_linear(b, side[0], left, "a guard");
-	check_linear(b, side[1], right, "a guard");
+	if (!when->restitution || !keeps_smooth(b, left) || !keeps_smooth(b, right)) {
+		check_linear(b, side[0], left, "a guard");
+		check_linear(b, side[1], right, "a guard");
+	}
 	impact_law->guard = is_rising(when) ? form_difference(left, right) : form_difference(right, left);
 	if (is_constant(impact_law->guard))
 		error(when->guard->start, "a coordinate, a velocity, a load or an input against a constant",
@@ -293,6 +296,22 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 	mpq_set_si(force[b->owner[coord]], sign, 1);
 }
 
+/* Between expressions the force acts as the guard changes with the coordinates. */
+static void add_gradient(const struct building *b, const struct when *when, const struct form *guard, mpq_t *force)
+{
+	for (int i = 0; i < guard->terms; i++) {
+		const struct basis *basis = &guard->term[i].basis;
+		if (basis->kind != BASIS_COORD)
+			continue;
+		if (basis->order > 0)
+			report_velocity(b, when, basis->index);
+		if (b->model->system.velocity[basis->index] < 0)
+			error(when->guard->start, "a mass, or an equation with its second derivative",
+			      "an impact needs a mass: %s is of first order", b->model->names.coord[basis->index]);
+		mpq_set(force[b->owner[basis->index]], guard->term[i].factor);
+	}
+}
+
 /* v -> v - (1 + e) d s; returns how many */
 static int velocity_jumps(const struct building *b, const struct impact_law *impact_law, mpq_srcptr e,
 			  struct jump *jump)
@@ -314,34 +333,16 @@ static int velocity_jumps(const struct building *b, const struct impact_law *imp
 	return jumps;
 }
 
-/* Of highest derivatives, as the equations have them */
-static mpq_t *inverse_masses(const struct building *b)
-{
-	struct linear shape = linear_like(&b->model->system);
-	int n = shape.n, column;
-	mpq_t *inverse = rationals((size_t)(n * n));
-	for (int i = 0; i < n; i++) {
-		const struct form *form = b->segment_equations->residual[i].form;
-		for (int k = 0; k < form->terms; k++) {
-			const struct basis *basis = &form->term[k].basis;
-			mpq_t *matrix[] = { shape.K, shape.C, shape.M };
-			if (basis->kind == BASIS_COORD)
-				mpq_set(matrix[basis->order][i * n + basis->index], form->term[k].factor);
-		}
-	}
-	if (!leading_inverse(&shape, inverse, &column))
-		abandon();                      /* told with the equations */
-	return inverse;
-}
-
 /* d = M^-1 f/(s M^-1 f), f the force of contact on the equations of the two */
 static void find_jumps(struct building *b, const struct when *when, struct impact_law *impact_law)
 {
 	int n = b->model->n;
-	mpq_t *inverse = inverse_masses(b), *force = rationals(n), *d = rationals(n);
+	mpq_t *inverse = inverse_masses(b, b->segment_equations), *force = rationals(n), *d = rationals(n);
 	RATIONAL speed = ZERO, factor = ZERO;
 	add_row(b, when->from, 1, force);
 	add_row(b, when->to, -1, force);
+	if (!when->from && !when->to)
+		add_gradient(b, when, impact_law->guard, force);
 	rational_product(n, n, 1, inverse, force, d);
 	for (int i = 0; i < impact_law->speed->terms; i++) {
 		const struct basis *basis = &impact_law->speed->term[i].basis;
@@ -405,6 +406,11 @@ static void build_impact(void *context)
 	for (int s = 0; s < b->model->system.segments; s++) {
 		struct impact_law *impact_law = &impact->in[s];
 		bool bounces = when->restitution != NULL;
+		if (when->restitution && contact_moves(b, impact_law->guard)) {
+			impact_law->speed = speed_that_moves(b, when, impact_law->guard);
+			impact->bounces = impact->moves = true;
+			continue;               /* the rest once the equations are there for all time */
+		}
 		impact_law->speed = rate_of_form(b, impact_law->guard);
 		if (when->restitution)
 			find_jumps(b, when, impact_law);

@@ -22,4 +22,15 @@ void hold_sliders(struct holding *h, const struct switching *s);
 /* where it slides, of the slider that is written there; NULL: it sticks */
 struct form *slide_velocity(const struct switching *s, const struct region *region, const struct node *node);
 
+/* ---- moving.c: contacts of mechanisms ---- */
+
+bool keeps_smooth(const struct building *b, const struct form *form); /* atoms that a stop may have: smooth ones */
+/* The derivative of its guard in time; a velocity in that is an error */
+struct form *speed_that_moves(struct building *b, const struct when *when, const struct form *guard);
+/* Whether what a stop of this guard does to velocities depends on the state */
+bool contact_moves(const struct building *b, const struct form *guard);
+_Noreturn void report_velocity(const struct building *b, const struct when *when, int coord); /* in a stop */
+void find_moving_impact(struct building *b, struct impact *impact);
+void find_moving_drag(struct building *b, struct drag *drag); /* where it moves */
+
 #endif

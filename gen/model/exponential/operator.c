@@ -344,7 +344,7 @@ static bool is_pressed(const struct model *model, int row)
 	bool any = false;
 	for (int i = 0; i < model->contacts.impacts && is_event_split(model->scheme); i++)
 		for (int j = 0; j < model->n && model->contacts.impact[i].bounces; j++)
-			any = any || (mpq_sgn(model->contacts.impact[i].in->direction[j]) != 0 &&
+			any = any || (is_moved_by(&model->contacts.impact[i], j) &&
 				      mpq_sgn(model->system.M[row * model->n + j]) != 0);
 	return any;
 }

@@ -25,7 +25,7 @@ bool is_piecewise_linear(const struct building *b)
 				return false;
 			switches = switches || (form->terms > 0 && form->term[form->terms - 1].basis.atom);
 		}
-	return switches;
+	return switches && !curved_guard(b);
 }
 
 /* ---- a form in one region ---- */

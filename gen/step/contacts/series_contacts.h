@@ -6,6 +6,7 @@
 #include "step/series/sequences.h"
 #include "step/step.h"
 
+struct entry { mpq_t number; int sequence; }; /* a factor: the number, or the sequence where that is not NONE */
 /* Impacts and what is held beside a series. Beside dividing switching functions the search watches other sequences. */
 struct watch {
 	int sequence, column;
@@ -16,10 +17,11 @@ struct series_hold {                /* a velocity that is kept at 0: by friction
 	bool above;                 /* the velocity of friction, or the guard, rises with the switching function */
 	int impact;                 /* whose contact rests; NONE: it is friction */
 	int velocity, pull[2];      /* watches; beyond 0 it is let go to the interval below, above; NONE: it is not */
-	double *back;               /* per state: what is taken from it for a velocity of 1 */
+	double *back;               /* per state: what is taken from it for a velocity of 1, */
+	int *back_watch;            /* or the watch of that; NONE: the number */
 	int force, only;            /* a sequence; the only state of the velocity, or NONE */
-	mpq_t *force_direction;     /* per state: what that force, 1, adds to its slope */
-	mpq_t *gives;               /* per force column: likewise */
+	struct entry *force_direction; /* per state: what that force, 1, adds to its slope */
+	struct entry *gives;        /* per force column: likewise */
 };
 struct series_impact {                     /* an impact */
 	int function, breakpoint;
@@ -27,7 +29,8 @@ struct series_impact {                     /* an impact */
 	int hold;                   /* in which its contact rests; NONE: it is no bounce */
 	int place, speed;           /* watches: how far its guard is beyond 0; its rate */
 	int jump, still, jumps;     /* assignments, so many from each on */
-	double *back;               /* per state: what is taken from it for a guard of 1 */
+	double *back;               /* per state: what is taken from it for a guard of 1, */
+	int *back_watch;            /* or the watch of that; NONE: the number */
 	double restitution;
 	double per;                 /* the switching function's for a guard of 1 */
 };
@@ -37,6 +40,7 @@ struct conflict {                   /* holds that cannot be all at once */
 };
 struct series_jump { int state, watch; }; /* a state takes the value of what is watched */
 struct contacts {
+	bool moves;                 /* some of it is what is watched, and no number */
 	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
 	int holds;
 	struct series_hold *hold;
@@ -59,6 +63,6 @@ struct sum held_slope(struct sequencing *w, int state);
 int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
 
 /* switching.c: those whose way counts stand first */
-void sort_watches(struct contacts *c);
+void sort_watches(struct contacts *c, int states);
 
 #endif

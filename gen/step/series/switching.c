@@ -253,7 +253,13 @@ static void renumber(const int *place, int *watch)
 		*watch = place[*watch];
 }
 
-void sort_watches(struct contacts *c)
+static void renumber_all(const int *place, int count, int *watch)
+{
+	for (int i = 0; i < count; i++)
+		renumber(place, &watch[i]);
+}
+
+void sort_watches(struct contacts *c, int states)
 {
 	int *place = ARRAY(int, c->watches), places = 0;
 	struct watch *sorted = ARRAY(struct watch, c->watches);
@@ -271,10 +277,12 @@ void sort_watches(struct contacts *c)
 		renumber(place, &c->hold[i].velocity);
 		renumber(place, &c->hold[i].pull[0]);
 		renumber(place, &c->hold[i].pull[1]);
+		renumber_all(place, states, c->hold[i].back_watch);
 	}
 	for (int i = 0; i < c->series_impacts; i++) {
 		renumber(place, &c->series_impact[i].place);
 		renumber(place, &c->series_impact[i].speed);
+		renumber_all(place, states, c->series_impact[i].back_watch);
 	}
 	for (int i = 0; i < c->assignments; i++)
 		renumber(place, &c->assignment[i].watch);

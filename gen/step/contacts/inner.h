@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* What the files of step/contacts have from one another, and nobody else. */
+#ifndef PLGEN_STEP_CONTACTS_INNER_H
+#define PLGEN_STEP_CONTACTS_INNER_H
+
+#include "series_contacts.h"
+
+/* ---- forces.c: who holds, how each acts on the others, and the forces of those that hold together ---- */
+
+struct moving_contact;
+
+struct constraint {
+	int impact, drag;           /* one of them NONE */
+	const struct moving_contact *moving; /* NULL: its factors are numbers */
+	const struct form *velocity, *rate;
+	const struct node *node;    /* of friction */
+	/* per state: what its force, 1, adds to the slope; that of a contact presses off */
+	struct entry *force_direction;
+	struct entry *row;          /* per state: the factor of its slope in the rate, */
+	double *sample;             /* and that as a number somewhere */
+	struct entry *gives;        /* per force column: what its force, 1, adds */
+	struct entry *delassus;     /* per constraint: what the force of that adds to the rate of the velocity here */
+	int bare;                   /* sequences: that rate without any of these forces, */
+	int slips, force;           /* the force while it slips, NONE: there is none; now */
+	int group;
+};
+struct constraints {
+	struct sequencing *w;
+	int constraints;
+	struct constraint *constraint;
+	struct contacts *c;
+	int none;                   /* a sequence: 0 */
+	int solved;                 /* of those that hold, as bits: their forces, one sequence behind the other */
+	struct answered { unsigned long set; int first; } *forces;
+};
+void find_constraints(struct constraints *all);
+int  bare_rate(struct sequencing *w, const struct constraint *h); /* without what holds: a sequence */
+int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
+void make_force(struct constraints *all, int index);
+void sum_add_entry(struct sum *sum, int sequence, const struct entry *entry, mpq_srcptr factor);
+int  entry_sequence(struct sequencing *w, const struct entry *entry);
+int  quotient_by_entry(struct sequencing *w, int a, const struct entry *below);
+
+#endif
