@@ -294,16 +294,30 @@ static bool move_coordinate(struct linearising *l, int coord, mpq_srcptr way)
 	return false;
 }
 
+/* To its initial value, which `way` leads from, where nothing holds the coordinate: on the way there are equilibria too */
+static bool move_free(struct linearising *l, int coord, mpq_srcptr way)
+{
+	RATIONAL part = ZERO, rest = ZERO;
+	mpq_set_d(part, 0.375);
+	mpq_mul(part, part, way);
+	mpq_sub(rest, way, part);
+	return move_coordinate(l, coord, part) && move_coordinate(l, coord, rest);
+}
+
 /* To the initial value of what nothing holds, and whole turns towards it, where the equations are the same there */
 static void move_back(struct linearising *l)
 {
 	REAL pi = WITH_BITS(BITS);
 	RATIONAL turns = ZERO, way = ZERO;
 	mpfr_const_pi(pi, MPFR_RNDN);
-	for (int i = 0; i < l->n; i++) {
+	for (int k = 0; k < 2 * l->n; k++) {                    /* twice: from far away turns are counted roughly */
+		const int i = k % l->n;
+		mpq_set(way, l->state[i]);
+		if (fabs(mpq_get_d(way)) < 1e-30)
+			move_coordinate(l, i, way);             /* its rounding, where another is not rational */
 		mpq_sub(way, l->state[i], l->b->model->initial[i]);
-		mpq_set_d(turns, 2 * round(mpq_get_d(way) / 6.283185307179586));
-		if (mpq_sgn(way) == 0 || move_coordinate(l, i, way) || mpq_sgn(turns) == 0)
+		mpq_set_d(turns, 2 * ceil(mpq_get_d(way) / 6.283185307179586 - 0.5 - 1e-9));   /* pi stays, -pi goes to it */
+		if (mpq_sgn(way) == 0 || move_free(l, i, way) || mpq_sgn(turns) == 0)
 			continue;
 		mpfr_get_q(way, pi);
 		mpq_mul(way, way, turns);

@@ -130,6 +130,14 @@ result $? 'the equilibria of two pendulums, and their poles'
 grep -q '"at":{"x":0,"th":0},"stability":"unstable","free":\["x"\]' log &&
 	grep -q '"at":{"x":0,"th":3.1415926535897931},"stability":"marginal","free":\["x"\]' log
 result $? 'equilibria for a program: a cart is free to move'
+# -sin(a) (1 + 2 cos(a)) is 0 at 0, at pi and at +-2 pi/3, each of them once though the search starts at one of them
+printf "model wells\ncoord a\nenergy T = a'^2/2, V = cos(a) + cos(2*a)/2\nstep 0.01\n" >wells.spec
+"$PLGEN" --equilibrium wells.spec >log 2>&1
+test "$(sed -n 's/^[0-9]*: a = \(.*\)/\1/p' log | sort -g)" = "-2.094395102; marginal
+0; unstable
+2.094395102; marginal
+3.141592654; unstable"
+result $? 'all equilibria of a potential with two wells'
 # What falls has none
 cat >falls.spec <<'SPEC'
 model falls
