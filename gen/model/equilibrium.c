@@ -294,7 +294,7 @@ static bool move_coordinate(struct linearising *l, int coord, mpq_srcptr way)
 	return false;
 }
 
-/* To its initial value, which `way` leads from, where nothing holds the coordinate: on the way there are equilibria too */
+/* To its initial value, which `way` leads from, where nothing holds it: on the way there are equilibria too */
 static bool move_free(struct linearising *l, int coord, mpq_srcptr way)
 {
 	RATIONAL part = ZERO, rest = ZERO;
@@ -316,7 +316,7 @@ static void move_back(struct linearising *l)
 		if (fabs(mpq_get_d(way)) < 1e-30)
 			move_coordinate(l, i, way);             /* its rounding, where another is not rational */
 		mpq_sub(way, l->state[i], l->b->model->initial[i]);
-		mpq_set_d(turns, 2 * ceil(mpq_get_d(way) / 6.283185307179586 - 0.5 - 1e-9));   /* pi stays, -pi goes to it */
+		mpq_set_d(turns, 2 * ceil(mpq_get_d(way) / 6.283185307179586 - 0.5 - 1e-9)); /* -pi to pi */
 		if (mpq_sgn(way) == 0 || move_free(l, i, way) || mpq_sgn(turns) == 0)
 			continue;
 		mpfr_get_q(way, pi);
