@@ -30,6 +30,8 @@
  *                                             its degree; how much of the largest sample is in each derivative, in h */
 #include "numbers.h"
 
+#include "given.h"
+
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
 #define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
 #if PL_PEAKS > 0
@@ -567,20 +569,14 @@ static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
     }
 }
 
-#if PL_INPUTS > 0
-void PL(batch)(PL_INSTANCES *b, size_t n, const real *u, real *out)
-#else
-void PL(batch)(PL_INSTANCES *b, size_t n, real *out)
-#endif
+void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 {
     PL(ahead) ahead;
     for (; n > 0; n -= ahead.steps) {
         ahead.steps = n < PL_AHEAD ? n : PL_AHEAD;
+        PL(share)(&b->shared, PL_THE_INPUTS, &ahead);
 #if PL_INPUTS > 0
-        PL(share)(&b->shared, u, &ahead);
         u += ahead.steps * PL_INPUTS;
-#else
-        PL(share)(&b->shared, NULL, &ahead);
 #endif
         PL(batch_go)(b, &ahead, out);
         out = out ? out + ahead.steps * PL_OUTPUTS * b->count : NULL;

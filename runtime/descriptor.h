@@ -10,6 +10,8 @@
  *     PL(param_names)[] and PL(nominal) */
 #include "numbers.h"
 
+#include "given.h"
+
 static void PL(any_init)(void *s)
 {
     PL(init)((struct PL_TYPE *)s);
@@ -39,12 +41,6 @@ static int PL(any_status)(const void *s)
 {
     return PL(status)((const struct PL_TYPE *)s);
 }
-
-#if PL_INPUTS > 0
-#define PL_GIVEN , u
-#else
-#define PL_GIVEN
-#endif
 
 static void PL(any_step)(void *s, const real *u)
 {

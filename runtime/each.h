@@ -7,6 +7,8 @@
  *     PL_STATES, PL_INPUTS, PL_OUTPUTS */
 #include "numbers.h"
 
+#include "given.h"
+
 #include <string.h>
 
 /* How many bytes of an instance are in row i: in the last there may be fewer. */
@@ -96,13 +98,8 @@ static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, re
     PL_TYPE one;
     PL(batch_take)(b, j, &one);
     for (; n > 0; n--) {
-#if PL_INPUTS > 0
-        PL(step)(&one, u);
-        u += PL_INPUTS;
-#else
-        (void)u;
-        PL(step)(&one);
-#endif
+        PL(step)(&one PL_GIVEN);
+        u = u ? u + PL_INPUTS : NULL;
         if (out || b->peak) {
             PL(batch_report)(b, j, &one, out);
         }
@@ -111,19 +108,11 @@ static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, re
     PL(batch_give)(b, j, &one);
 }
 
-#if PL_INPUTS > 0
-void PL(batch)(PL_INSTANCES *b, size_t n, const real *u, real *out)
-#else
-void PL(batch)(PL_INSTANCES *b, size_t n, real *out)
-#endif
+void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 {
     size_t j;
     for (j = 0; j < b->count; j++) {
-#if PL_INPUTS > 0
-        PL(batch_one)(b, j, n, u, out);
-#else
-        PL(batch_one)(b, j, n, NULL, out);
-#endif
+        PL(batch_one)(b, j, n, PL_THE_INPUTS, out);
     }
     if (b->count > 0) {
         PL(batch_take)(b, 0, &b->shared);

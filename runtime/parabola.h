@@ -17,6 +17,8 @@
  *     PL(left_at)(s, which, point, u, y, left)   the remainder at state y */
 #include "numbers.h"
 
+#include "given.h"
+
 /* x, part of h after now, of remainders at 0, 1/2 and 1 h */
 static void PL(under)(const PL_TYPE *s, const real *u, int which, real left[3][PL_FORCES], real part, real x[PL_SIZE])
 {
@@ -39,11 +41,7 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real *u, real tau, rea
     PL_TYPE end = *s;
     real left[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
     int i;
-#if PL_INPUTS > 0
-    PL_BARE(&end, u);
-#else
-    PL_BARE(&end);
-#endif
+    PL_BARE(&end PL_GIVEN);
     PL(left_at)(s, which, 0, u, s->y, left[0]);
     PL(left_at)(s, which, PL_END, u, end.y, left[2]);
     for (i = 0; i < PL_FORCES; i++) {

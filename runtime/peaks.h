@@ -18,13 +18,9 @@
  * they are.  Instances of a batch look for peaks by PL(look), too. */
 #include "numbers.h"
 
-#if PL_INPUTS > 0
-#define PL_GIVEN , u
-static void PL(one_step)(PL_TYPE *s, const real u[PL_INPUTS]);
-#else
-#define PL_GIVEN
-static void PL(one_step)(PL_TYPE *s);
-#endif
+#include "given.h"
+
+static void PL(one_step)(PL_TYPE *s PL_TAKEN);
 static void PL(now)(const PL_TYPE *s, real out[PL_OUTPUTS]);
 
 #if PL_BY_VALUES
@@ -70,14 +66,8 @@ static PL_APART int PL(look_inside)(const PL_TYPE *s, const PL_TYPE *after, cons
 }
 
 /* Where the second difference of the last three ends says that nothing passes the peak, it is not looked inside. */
-#if PL_INPUTS > 0
-void PL(step)(PL_TYPE *s, const real u[PL_INPUTS])
+void PL(step)(PL_TYPE *s PL_TAKEN)
 {
-#else
-void PL(step)(PL_TYPE *s)
-{
-    const real *const u = NULL;
-#endif
     const PL_TYPE before = *s;
     real begin[PL_OUTPUTS], end[PL_OUTPUTS];
     int p;
@@ -89,7 +79,8 @@ void PL(step)(PL_TYPE *s)
         const real rise = end[o] - begin[o], bend = pl_magnitude(rise - s->rise[p]);
         const real from = pl_magnitude(begin[o]), to = pl_magnitude(end[o]);
         if (!((from > to ? from : to) + bend <= s->peak[p])) {
-            s->rise[p] = PL(look_inside)(&before, s, u, o, begin[o], end[o], &s->peak[p]) ? rise : (real)1e30;
+            const int smooth = PL(look_inside)(&before, s, PL_THE_INPUTS, o, begin[o], end[o], &s->peak[p]);
+            s->rise[p] = smooth ? rise : (real)1e30;
         } else {
             s->rise[p] = rise;
         }
@@ -137,16 +128,10 @@ static void PL(retune_peaks)(PL(coeffs) *c, const pl_two *A, real h)
 }
 #endif
 
-#if PL_INPUTS > 0
-void PL(step)(PL_TYPE *s, const real u[PL_INPUTS])
+void PL(step)(PL_TYPE *s PL_TAKEN)
 {
-#else
-void PL(step)(PL_TYPE *s)
-{
-    const real *const u = NULL;
-#endif
     real x[PL_SIZE], end[PL_OUTPUTS];
-    PL(begin_step)(s, u, x);
+    PL(begin_step)(s, PL_THE_INPUTS, x);
     PL(one_step)(s PL_GIVEN);
     PL(now)(s, end);
     PL(look)(s, x, end, s->peak);

@@ -18,6 +18,8 @@
  *     PL(known_sample)(ramp, u)  inputs, those that ramp at `ramp` */
 #include "numbers.h"
 
+#include "given.h"
+
 /* The largest of worst and |y - known|, in units in the last place */
 static real PL(deviation)(const real *y, const real *known, real worst)
 {
@@ -58,12 +60,6 @@ static real PL(crossed_as)(const PL_TYPE *s, uint64_t k, int *found, real worst)
     }
     return worst;
 }
-#endif
-
-#if PL_INPUTS > 0
-#define PL_GIVEN , u
-#else
-#define PL_GIVEN
 #endif
 
 static real PL(replayed)(PL_TYPE *s, real worst)

@@ -81,6 +81,9 @@
 #undef PL_GUARD_ROWS
 #undef PL_GUARD_TABLES
 #undef PL_GIVEN
+#undef PL_TAKEN
+#undef PL_TAKEN_ROWS
+#undef PL_THE_INPUTS
 #undef PL_GO
 #undef PL_GONE
 #undef PL_FRICTION_FORCES
