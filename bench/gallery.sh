@@ -19,6 +19,10 @@ bouncing_ball 5 0.01
 brake 8 0.02
 building 20 0.05
 drivetrain 2 0.005
+cart_pole 6 0.02
+chain 4 0.02
+crane 20 0.05
+double_pendulum 10 0.02
 duffing 40 0.1 taylor
 frame 10 0.02
 gear1 60 0.2
@@ -34,6 +38,7 @@ pendulum 20 0.05 taylor
 quad2dof 60 0.2 taylor
 quarter_car 3 0.01
 quarter_car_bumps 3 0.01
+robot_arm 1.5 0.01
 rotor -
 scs 5 0.0125
 scs_weak 1 0.0025
@@ -42,6 +47,7 @@ sdcsf 10 0.025
 stick_slip 10 0.025
 stop 2 0.005
 street 20 0.05
+swing_arm 2.5 0.01
 tuned_floor 10 0.02
 two_masses 6 0.01
 vanderpol 30 0.1 taylor
@@ -81,6 +87,7 @@ echo "$lengths" | while read -r name end step scheme; do
 		street) shown='s/^output n1.roof.*/output n1.roof, n4.roof, n10.roof/' ;;
 		vanderpol_stiff) shown='s/^step/output x\n&/' ;;
 		quad2dof) shown='/^output energy/d' ;;
+		cart_pole | chain | double_pendulum) shown='s/, energy.*//' ;;
 		*) shown= ;;
 	esac
 	spec=models/$name.spec

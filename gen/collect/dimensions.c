@@ -170,6 +170,24 @@ static void add_energies(struct dimensions *w)
 	}
 }
 
+/* Places and radii are of one dimension, a turn is a number. */
+static void add_drawings(struct dimensions *w)
+{
+	const struct spec *spec = w->spec;
+	w->statement = NULL;
+	const int group = spec->drawings ? new_group(w, "what is drawn") : 0;
+	for (int i = 0; i < spec->drawings; i++) {
+		const struct drawing *d = &spec->drawing[i];
+		struct node *node[MOST_DRAWN];
+		const int count = nodes_of_drawing(d, node);
+		for (int k = 0; k < count; k++)
+			if (node[k] != d->turn)
+				add_term(&w->group[group], node[k], NULL, node[k]->start, dimension_of(w, node[k]));
+		if (d->turn)
+			need_number(w, "turned", d->turn, dimension_of(w, d->turn));
+	}
+}
+
 static void add_whens(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
@@ -496,6 +514,7 @@ static void check_all(void *context)
 	add_equations(w);
 	add_elements(w);
 	add_energies(w);
+	add_drawings(w);
 	for (const struct symbol *s = w->spec->first; s; s = s->next)
 		if (!s->broken)
 			add_value(w, s);

@@ -126,14 +126,14 @@ void give_states_in_units(struct building *b)
 
 struct output_work {
 	struct building *b;
-	const struct symbol *symbol;
+	struct node *node;
 	struct value *value;
 };
 
 static void collect_output(void *context)
 {
 	struct output_work *work = context;
-	work->value = collect(&work->b->collector, work->symbol->value);
+	work->value = collect(&work->b->collector, work->node);
 }
 
 static void add_output(struct model *model, const char *name, const struct symbol *s, struct form *form)
@@ -166,7 +166,7 @@ void collect_outputs(struct building *b, struct segment_equations *segment_equat
 	segment_equations->output = ARRAY(struct value *, b->spec->count.outputs);
 	b->collector.tolerant = b->collector.reading = true;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
-		struct output_work work = { b, s, NULL };
+		struct output_work work = { b, s->value, NULL };
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
 		statement_guard(collect_output, &work);
@@ -230,7 +230,7 @@ static void name_outputs(struct building *b)
 		if (s->kind != SYMBOL_OUTPUT)
 			continue;
 		bool row = is_row(b, index), reads_slider_force = false;
-		struct output_work work = { b, s, row ? b->segment_equations->output[index] : NULL };
+		struct output_work work = { b, s->value, row ? b->segment_equations->output[index] : NULL };
 		if (!row)
 			statement_guard(collect_left, &work);
 		row = row || becomes_row(b, index, work.value, &reads_slider_force);
@@ -389,6 +389,27 @@ static void see_state(const struct model *model, int state, mpq_t *row)
 		mpq_set(row[state_of(model, &form->term[i].basis)], form->term[i].factor);
 }
 
+static void check_drawn(void *context)
+{
+	struct output_work *work = context;
+	collect_left(work);
+	if (work->value->rows * work->value->columns != 1)
+		error(work->node->start, "a place is two numbers: (x, y)", "expected a scalar, found a %d x %d matrix",
+		      work->value->rows, work->value->columns);
+}
+
+/* What drawings read is what outputs may read. */
+static void check_drawings(struct building *b)
+{
+	const struct spec *spec = b->spec;
+	struct node *node[MOST_DRAWN];
+	for (int i = 0; i < spec->drawings; i++) {
+		const int count = nodes_of_drawing(&spec->drawing[i], node);
+		for (int k = 0; k < count && !diagnostics_errors(); k++)
+			statement_guard(check_drawn, &(struct output_work){ b, node[k], NULL });
+	}
+}
+
 /* Loads that only outputs use get their load states too, so all are placed before any is spread. */
 void build_outputs(struct building *b)
 {
@@ -399,6 +420,7 @@ void build_outputs(struct building *b)
 	struct linear first = model->schedule.operators ? operator_system(model, 0) : *system;
 	highest_derivatives(&first, inverse, false, highest);
 	name_outputs(b);
+	check_drawings(b);
 	int reported = -1;                      /* the statement last reported: once is enough */
 	for (int i = 0; i < model->outputs; i++)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)

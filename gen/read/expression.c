@@ -339,7 +339,7 @@ static struct node *read_matrix(struct parser *p)
 }
 
 /* At a bracket: dot(x) is meant for a derivative. */
-static bool has_two_arguments(const struct parser *p)
+bool has_two_arguments(const struct parser *p)
 {
 	const char *text = p->token.at.source->text + p->token.at.offset;
 	int depth = 0;

@@ -73,3 +73,60 @@ void read_spring(struct parser *p) { read_element(p, ELEMENT_SPRING); }
 void read_damper(struct parser *p) { read_element(p, ELEMENT_DAMPER); }
 void read_force(struct parser *p) { read_element(p, ELEMENT_FORCE); }
 void read_friction(struct parser *p) { read_element(p, ELEMENT_FRICTION); }
+
+/* ---- drawings: what a page shows; they change nothing that is computed ---- */
+
+/* point: ( expression , expression ) | expression [ , expression ] */
+static void read_point(struct parser *p, struct node **point)
+{
+	const bool bracket = is_op(p, "(") && has_two_arguments(p);
+	if (bracket)
+		take(p);
+	point[0] = read_quantity(p);
+	if (bracket)
+		expect_op(p, ",", "','");
+	if (bracket || take_op(p, ","))
+		point[1] = read_quantity(p);
+	if (bracket)
+		expect_op(p, ")", "')' or an operator");
+}
+
+/* draw: draw ( mass | wheel | joint | ground ) at point [ radius expression ] [ turned expression ]
+ * | draw ( rod | spring | damper ) from point to point */
+void read_draw(struct parser *p)
+{
+	static const char *const known[] = { "mass", "wheel", "joint", "ground", "rod", "spring", "damper" };
+	enum { AT = 4, KNOWN = 7 };
+	struct drawing drawing = { .part = p->part, .at = { p->lexer.source, p->statement } };
+	int kind = 0;
+	while (kind < KNOWN && !take_word(p, known[kind]))
+		kind++;
+	if (kind == KNOWN)
+		unexpected(p, "mass, wheel, joint or ground, or rod, spring or damper");
+	drawing.what = known[kind];
+	drawing.points = kind < AT ? 1 : 2;
+	expect_word(p, kind < AT ? "at" : "from");
+	read_point(p, drawing.point[0]);
+	if (kind >= AT) {
+		expect_word(p, "to");
+		read_point(p, drawing.point[1]);
+	}
+	if (kind < AT && take_word(p, "radius"))
+		drawing.radius = read_quantity(p);
+	if (kind < AT && take_word(p, "turned"))
+		drawing.turn = read_quantity(p);
+	expect_end(p);
+	drawing.end = p->end;
+	*MORE(p->spec->drawing, p->spec->drawings) = drawing;
+}
+
+int nodes_of_drawing(const struct drawing *d, struct node **node)
+{
+	struct node *const all[] = { d->point[0][0], d->point[0][1], d->point[1][0], d->point[1][1], d->radius,
+				     d->turn };
+	int count = 0;
+	for (int i = 0; i < MOST_DRAWN; i++)
+		if (all[i])
+			node[count++] = all[i];
+	return count;
+}

@@ -22,7 +22,7 @@ static const struct statement {
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
 	{ "energy", read_energy }, { "dissipation", read_dissipation }, { "when", read_when }, { "stop", read_stop },
-	{ "range", read_range }
+	{ "range", read_range }, { "draw", read_draw }
 };
 
 /* tolerance, substeps, modes, use, need, budget, when, stop and range may be names of a spec's own: in an equation

@@ -61,6 +61,7 @@ struct node *resolve_name(struct parser *p, struct token token); /* what it stan
 struct node *read_expression(struct parser *p);
 const struct unit *take_unit(struct parser *p, const struct node *value); /* behind it; NULL: none stands here */
 struct node *read_quantity(struct parser *p);               /* an expression, and a unit behind it or none */
+bool has_two_arguments(const struct parser *p);             /* at a bracket: a comma stands in it, in no inner one */
 struct node *read_condition(struct parser *p);              /* an expression, or a single comparison of two */
 struct node *read_state(struct parser *p);                  /* at a name: what it stands for */
 /* a scalar coordinate, or a component; `ground`: or NULL, the ground */
@@ -118,6 +119,7 @@ void read_spring(struct parser *p);
 void read_damper(struct parser *p);
 void read_force(struct parser *p);
 void read_friction(struct parser *p);
+void read_draw(struct parser *p);
 
 /* ---- energy.c ---- */
 

@@ -168,6 +168,14 @@ struct energy {                     /* or the force at a point */
 	struct place at, end;
 	struct node *value, *point;
 };
+struct drawing {                    /* draw WHAT at POINT, or from POINT to POINT: for pages */
+	struct place at, end;
+	const struct assembly_part *part;
+	const char *what;
+	int points;
+	struct node *point[2][2];   /* x, y; y NULL: 0 */
+	struct node *radius, *turn; /* of a wheel; NULL: not given */
+};
 struct total {                      /* of a mechanism, or of network elements */
 	enum { TOTAL_ENERGY, TOTAL_POWER, TOTAL_MOMENTUM } kind;
 	struct symbol *let;
@@ -297,6 +305,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct element *element;
 	int energies;
 	struct energy *energy;
+	int drawings;
+	struct drawing *drawing;
 	int totals;
 	struct total *total;
 	int whens;                      /* in the order in which they act at one instant */
@@ -324,6 +334,11 @@ struct mode_list parse_mode_list(struct spec *spec, const struct source *source)
 void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
 struct symbol *spec_find(const struct spec *spec, const char *name);
 char *text_between(struct place start, struct place end);   /* without comments, white space folded */
+
+/* ---- network.c ---- */
+
+enum { MOST_DRAWN = 6 };
+int nodes_of_drawing(const struct drawing *d, struct node **node); /* what it reads; the turn, where it has one, last */
 
 /* ---- energy.c: equations from energies ---- */
 

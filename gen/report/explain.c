@@ -360,6 +360,9 @@ void text_equations(FILE *to, const struct step *step)
 	for (int i = 0; i < spec->energies; i++)
 		if (energy_text(spec, i))
 			fprintf(to, "    %s\n", energy_text(spec, i));
+	for (int i = 0; i < spec->drawings; i++)
+		fprintf(to, "    %s\n",
+			written_text(spec->drawing[i].part, spec->drawing[i].at, spec->drawing[i].end));
 	text_assembly(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);

@@ -246,6 +246,30 @@ static void json_scheme(FILE *to, const struct step *step)
 		json_reach(to, step);
 }
 
+static const char *place_text(const struct node *node)
+{
+	return node ? json_text(text_between(node->start, node->end)) : "0";
+}
+
+/* Expressions as they are written */
+static void json_drawings(FILE *to, const struct spec *spec)
+{
+	fputs("  \"drawing\": [", to);
+	for (int i = 0; i < spec->drawings; i++) {
+		const struct drawing *d = &spec->drawing[i];
+		fprintf(to, "%s{\"what\": \"%s\"", i ? ",\n    " : "", d->what);
+		for (int k = 0; k < d->points; k++)
+			fprintf(to, ", \"%s\": [\"%s\", \"%s\"]", d->points == 1 ? "at" : k ? "to" : "from",
+				place_text(d->point[k][0]), place_text(d->point[k][1]));
+		if (d->radius)
+			fprintf(to, ", \"radius\": \"%s\"", place_text(d->radius));
+		if (d->turn)
+			fprintf(to, ", \"turned\": \"%s\"", place_text(d->turn));
+		fputs("}", to);
+	}
+	fputs("],\n", to);
+}
+
 void explain_json(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
@@ -273,6 +297,8 @@ void explain_json(FILE *to, const struct step *step)
 		json_modal_truncation(to, model);
 	if (model->spec->assembly.parts)
 		json_assembly(to, model->spec);
+	if (model->spec->drawings)
+		json_drawings(to, model->spec);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));
 	json_rational_matrix(to, "M", model->written->n, model->written->system.M);

@@ -17,9 +17,10 @@ CFLAGS=${run_cc#* }
 export XDG_CACHE_HOME CC CFLAGS
 cases=$work/cases
 mkdir "$cases"
-awk -v at="$cases/" '/^=== / { name = at $2; part = ".spec"; next }
+awk -v at="$cases/" -v root="$root" '/^=== / { name = at $2; part = ".spec"; next }
 	name == "" { next }
 	/^---$/ { part = ".values"; next }
+	/^from / { file = root "/" $2; while ((getline line <file) > 0) print line >(name part); next }
 	NF > 0 { print >(name part) }' "$root/tests/mechanisms/mechanisms.cases"
 
 # compared VALUES CSV WITHIN: the last row against the values; WITHIN in place of their tolerances. Prints what differs,
@@ -138,6 +139,9 @@ test "$(sed -n 's/^[0-9]*: a = \(.*\)/\1/p' log | sort -g)" = "-2.094395102; mar
 2.094395102; marginal
 3.141592654; unstable"
 result $? 'all equilibria of a potential with two wells'
+"$PLGEN" --explain=json "$root/models/swing_arm.spec" 2>log | grep -A 3 drawing >>log
+grep -qF '"what": "wheel", "at": ["across", "wheel"], "radius": "r"}]' log && grep -qF '"from": ["0", "z"], "to"' log
+result $? 'what is drawn, for a program'
 # What falls has none
 cat >falls.spec <<'SPEC'
 model falls
