@@ -59,7 +59,8 @@ awk -v board="$name" -v steps="$7" -v status=$status '
             m = split(lines[order[i]], key, "|")
             bad = 0
             for (j = 2; j <= m; j++)
-                if (found[key[j]] != expected[key[j]] && bad++ == 0)
+                # status 1 or 4: a run that has left the finite numbers, or that gives up each step, says nothing
+                if ((found[key[j]] != expected[key[j]] || expected[key[j]] ~ / status [145]$/) && bad++ == 0)
                     said = "# found    " found[key[j]] "\n# expected " expected[key[j]]
             print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " \
                 m - 1 " lines, up to " steps " steps"
