@@ -470,6 +470,18 @@ static void banner_form(const struct emitter *e)
 		say(e, " * Numbers and arithmetic are float; each constant is rounded to it once.\n");
 }
 
+/* By its program alone; --explain counts what steps do. */
+static void banner_board(const struct emitter *e)
+{
+	const bool counted = is_linear_alone(e->step) || e->model->switching || e->system->loads == 0;
+	if (counted && !e->step->refresh)
+		say(e, " * On a Cortex-M4, %s: about %s instructions.\n",
+		    e->model->request.single ? "whose FPU has float" : "double in software",
+		    two_digits(instructions_of_program(e->step)));
+	else
+		say(e, " * plgen --explain counts its instructions on a Cortex-M4.\n");
+}
+
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
@@ -488,10 +500,7 @@ static void banner_cost(const struct emitter *e)
 	if (program->calls)
 		say(e, ", %d calls of the model's own functions", program->calls);
 	say(e, ".\n");
-	if (is_linear_alone(e->step) && !e->step->refresh)
-		say(e, " * On a Cortex-M4, %s: about %s instructions.\n",
-		    e->model->request.single ? "whose FPU has float" : "double in software",
-		    two_digits(instructions_of_linear(e->step)));
+	banner_board(e);
 	if (peaks_by_values(e->step))
 		banner_sentence(e, "Peaks are looked for by values inside a step where the last three ends do not "
 				   "show that none is passed.");

@@ -2,7 +2,7 @@
 /* Behind plrt.h, before the C of a model that is counted (count.c): what has run so far, as step/cost.c counts it.
  * Quotients are products, a call is one of <math.h>. Of what the runtime does with arrays it is an estimate. */
 static struct {
-	uint64_t multiplications, additions, calls, forcings;
+	uint64_t multiplications, additions, calls, forcings, waits, pieces, events, terms;
 } pl_counted;
 const void *const pl_counts = &pl_counted;
 
@@ -21,6 +21,10 @@ const void *const pl_counts = &pl_counted;
 #define pl_accumulate(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulate(sum, term, small, rest))
 #define pl_accumulatef(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulatef(sum, term, small, rest))
 
+/* The time to a change of loads */
+#define pl_until(t0, k, h, change) (pl_counted.waits++, pl_until(t0, k, h, change))
+#define pl_untilf(t0, k, h, change) (pl_counted.waits++, pl_untilf(t0, k, h, change))
+
 /* Matrices and linear equations */
 #define pl_multiply(rows, columns, A, x, y) (PL_TAKES_BOTH((rows) * (columns)), pl_multiply(rows, columns, A, x, y))
 #define pl_multiplyf(rows, columns, A, x, y) (PL_TAKES_BOTH((rows) * (columns)), pl_multiplyf(rows, columns, A, x, y))
@@ -38,16 +42,20 @@ const void *const pl_counts = &pl_counted;
 #define pl_solve_complex(n, A, pivot, x) (PL_TAKES_BOTH(4 * (n) * (n)), pl_solve_complex(n, A, pivot, x))
 #define pl_solvef_complex(n, A, pivot, x) (PL_TAKES_BOTH(4 * (n) * (n)), pl_solvef_complex(n, A, pivot, x))
 
-/* A step of regions, or a part of it, and whether it is clear */
+/* A step of regions, or a part of it, and whether it is clear; how many events it had is in c behind it */
+#define PL_PIECE(m, c, call) (pl_counted.pieces++, (call), pl_counted.events += (uint64_t)(c)->crossings, \
+	pl_counted.terms += (uint64_t)(c)->crossings * (uint64_t)((m)->degree * (m)->size * (m)->size))
 #define PL_PIECES(m, c, words) \
 	PL_TAKES_BOTH((m)->size * ((words) * (m)->size + 3 + ((m)->halvings[(c)->matrix] > 0 ? 4 * (m)->size : 0)))
-#define pl_switching_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_step(m, x, c, e, w))
-#define pl_switchingf_step(m, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_step(m, x, c, e, w))
+#define pl_switching_step(m, x, c, e, w) (PL_PIECES(m, c, 1), PL_PIECE(m, c, pl_switching_step(m, x, c, e, w)))
+#define pl_switchingf_step(m, x, c, e, w) (PL_PIECES(m, c, 1), PL_PIECE(m, c, pl_switchingf_step(m, x, c, e, w)))
 #define pl_switching_compensated_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_compensated_step(m, x, c, e, w))
 #define pl_switchingf_compensated_step(m, x, c, e, w) (PL_PIECES(m, c, 3), pl_switchingf_compensated_step(m, x, c, \
     e, w))
-#define pl_switching_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switching_advance(m, t, x, c, e, w))
-#define pl_switchingf_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), pl_switchingf_advance(m, t, x, c, e, w))
+#define pl_switching_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), \
+	PL_PIECE(m, c, pl_switching_advance(m, t, x, c, e, w)))
+#define pl_switchingf_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 1), \
+	PL_PIECE(m, c, pl_switchingf_advance(m, t, x, c, e, w)))
 #define pl_switching_compensated_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), pl_switching_compensated_advance(m, \
     t, x, c, e, w))
 #define pl_switchingf_compensated_advance(m, t, x, c, e, w) (PL_PIECES(m, c, 3), \
@@ -56,8 +64,8 @@ const void *const pl_counts = &pl_counted;
 /* The same with friction and impacts */
 #define PL_GUARDED(m, words) PL_TAKES_BOTH((m)->size * ((words) * (m)->size + 3 + (m)->switches))
 #define pl_guards_step(m, t, x, c, e, w) (PL_GUARDED(m, 1), pl_guards_step(m, t, x, c, e, w))
-#define pl_guards_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), pl_guards_advance(m, t, x, c, e, w))
-#define pl_guardsf_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), pl_guardsf_advance(m, t, x, c, e, w))
+#define pl_guards_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), PL_PIECE(m, c, pl_guards_advance(m, t, x, c, e, w)))
+#define pl_guardsf_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), PL_PIECE(m, c, pl_guardsf_advance(m, t, x, c, e, w)))
 #define pl_guards_compensated_advance(m, t, x, c, e, w) (PL_GUARDED(m, 3), \
     pl_guards_compensated_advance(m, t, x, c, e, w))
 #define pl_guardsf_compensated_advance(m, t, x, c, e, w) (PL_GUARDED(m, 3), \

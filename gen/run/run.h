@@ -21,7 +21,7 @@ enum running_with { WITH_RHS = 1, WITH_COUNTS = 2 };        /* NAME_rhs; counts 
 /* What has run so far, as step/cost.c counts it: quotients are products, a call is one of <math.h>, a forcing term is
  * cos and sin of the runtime, whose sums and products are counted too. Of what the runtime does with arrays it is an
  * estimate. */
-struct counted { uint64_t multiplications, additions, calls, forcings; };
+struct counted { uint64_t multiplications, additions, calls, forcings, waits, pieces, events, terms; };
 struct native {
 	const void *model, *rhs;    /* the descriptor; NULL: without */
 	const struct counted *counted;

@@ -184,7 +184,11 @@ static double instructions_between(const struct step *step, struct counted from,
 	return instructions_of(step, (struct operations){ (double)(to.multiplications - from.multiplications),
 							  (double)(to.additions - from.additions),
 							  (double)(to.calls - from.calls),
-							  (double)(to.forcings - from.forcings) });
+							  (double)(to.forcings - from.forcings),
+							  (double)(to.waits - from.waits),
+							  (double)(to.pieces - from.pieces),
+							  (double)(to.events - from.events),
+							  (double)(to.terms - from.terms) });
 }
 
 struct board_cost board_cost_of(struct place at, const struct step *step)

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step costs: evaluations of the remainder, load states, sums. */
+#include "model/capability.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
@@ -191,17 +192,37 @@ double cost_of_step(const struct step *step, const struct target *target)
 	       target->cost[single].forcing * forcings_of(step) / refresh + target->cost[single].step;
 }
 
-/* Fitted as those of needs.c; in float the search for events goes by loops over arrays. */
+/* Instructions: of an operation, cos and sin of a load, a function of <math.h>, the time to a change of loads, a piece
+ * of a step that is searched, an event in it, a term of that one's polynomials, a step */
+struct takes { double multiplication, addition, forcing, call, wait, piece, event, term, step; };
+
+/* Fitted as those of needs.c, to the steps of tests/firmware/costs.sh. In double the search with friction and impacts
+ * adds many zeros, which soft float is done with early; in float searches go by loops over arrays. */
+static const struct takes *takes_of(const struct step *step)
+{
+	static const struct takes plain[2] = {
+		{ 58, 78, 1970, 1180, 2950, 0, 0, 0, 0 }, { 1.5, 1.5, 110, 67, 310, 0, 0, 0, 12 }
+	};
+	static const struct takes switching[2] = {
+		{ 58, 78, 1970, 1180, 2950, 0, 0, 0, 0 }, { 6.8, 6.8, 110, 67, 310, 480, 7000, 24, 0 }
+	};
+	static const struct takes contacts[2] = {
+		{ 58, 30, 1970, 1180, 2950, 0, 0, 0, 0 }, { 14.6, 14.6, 110, 67, 310, 290, 7000, 24, 0 }
+	};
+	const struct model *model = step->model;
+	const struct takes *takes = !model->switching ? plain : facts_of_model(model).contacts ? contacts : switching;
+	return &takes[model->request.single];
+}
+
 double instructions_of(const struct step *step, struct operations of)
 {
-	static const struct { double multiplication, addition, searched, forcing, call, step; } each[2] = {
-		{ 58, 78, 0, 1970, 1180, 0 }, { 1.5, 1.5, 20, 110, 67, 12 }
-	};
-	const bool single = step->model->request.single, searched = single && step->model->switching;
+	const bool single = step->model->request.single;
+	const struct takes *each = takes_of(step);
 	const double m = of.multiplications - of.forcings * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL);
 	const double a = of.additions - of.forcings * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD);
-	return (searched ? each[1].searched * (m + a) : each[single].multiplication * m + each[single].addition * a) +
-	       each[single].forcing * of.forcings + each[single].call * of.calls + each[single].step;
+	return each->multiplication * m + each->addition * a + each->forcing * of.forcings + each->call * of.calls +
+	       each->wait * of.waits + each->piece * of.pieces + each->event * of.events + each->term * of.terms +
+	       each->step;
 }
 
 const char *two_digits(double count)
@@ -212,11 +233,13 @@ const char *two_digits(double count)
 	return format("%.0f", floor(count / unit + 0.5) * unit);
 }
 
-double instructions_of_linear(const struct step *step)
+double instructions_of_program(const struct step *step)
 {
 	const struct program *program = step->program;
-	return instructions_of(step, (struct operations){ program->multiplications, program->additions, program->calls,
-							  forcings_of(step) });
+	return instructions_of(step, (struct operations){
+		.multiplications = program->multiplications, .additions = program->additions, .calls = program->calls,
+		.forcings = forcings_of(step), .waits = 2 * loads_change(&step->branch->system),
+		.pieces = step->model->switching != NULL });
 }
 
 void count_peaks(struct step *step)

@@ -20,11 +20,11 @@ void count_rotated_loads(struct program *program, const struct step *step);
 void count_regions(struct step *step, int multiplications, int additions);
 /* a step, and its outputs where they are linear: instructions; without a target operations, those of double twice */
 double cost_of_step(const struct step *step, const struct target *target);
-/* as they were counted; calls: of <math.h>; forcing terms: of pl_cossin, whose sums and products are among the others
- * */
-struct operations { double multiplications, additions, calls, forcings; };
+/* as they were counted; calls: of <math.h>; forcings: of pl_cossin, whose sums and products are among the others;
+ * waits: for a change of loads; pieces of a step that were searched, events in them, terms of their Taylor polynomials */
+struct operations { double multiplications, additions, calls, forcings, waits, pieces, events, terms; };
 double instructions_of(const struct step *step, struct operations of); /* of a Cortex-M4 */
-double instructions_of_linear(const struct step *step);     /* by its program, without refreshes */
+double instructions_of_program(const struct step *step);     /* by its program, without refreshes */
 const char *two_digits(double count);                       /* 5200, of 5234 */
 void count_peaks(struct step *step);                        /* after its program and layout */
 int refresh_numbers(const struct step *step);               /* of the table for steps between refreshes */
