@@ -21,7 +21,7 @@ void count_regions(struct step *step, int multiplications, int additions);
 /* a step, and its outputs where they are linear: instructions; without a target operations, those of double twice */
 double cost_of_step(const struct step *step, const struct target *target);
 /* as they were counted; calls: of <math.h>; forcings: of pl_cossin, whose sums and products are among the others;
- * waits: for a change of loads; pieces of a step that were searched, events in them, terms of their Taylor polynomials */
+ * waits: for a change of loads; pieces of a step that were searched; events in them, terms of their polynomials */
 struct operations { double multiplications, additions, calls, forcings, waits, pieces, events, terms; };
 double instructions_of(const struct step *step, struct operations of); /* of a Cortex-M4 */
 double instructions_of_program(const struct step *step);     /* by its program, without refreshes */

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # costs.sh PLGEN SOURCE_ROOT: what --explain says of a step on a Cortex-M4 and of the bytes of an instance,
-# against an emulated one that counts instructions, within a factor of 1.34, of 1.25 where events are searched for; bytes
+# against an emulated one that counts instructions, within a factor of 1.34, with events of 1.25; bytes
 # exactly. What the banner says, of the step's program alone, is the same within a factor of 1.06 (=) where a step is
 # straight-line code, of 1.7 (~) where it is an event-free step, and nothing is compared (-) where steps share a series.
 set -u
