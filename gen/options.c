@@ -470,6 +470,7 @@ void read_options(int argc, char **argv, struct options *options)
 	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
+	options->request.explained = options->print == PRINT_EXPLAIN || options->print == PRINT_JSON;
 	note_all(options);
 	find_together(options);
 }

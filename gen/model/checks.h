@@ -51,6 +51,7 @@ double fastest_decay(const struct linear *system);          /* the largest -Re o
 
 /* ---- linearise.c: the linear equations at a point, as a spec ---- */
 
+void find_symmetries(void *building);                       /* fills in model->equations.free */
 void linearise(void *building);                             /* fills in model->equations.linearised */
 
 /* ---- lint.c: what is no mistake of language, and yet seldom meant ---- */

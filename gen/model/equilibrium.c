@@ -361,12 +361,10 @@ void find_equilibrium(struct linearising *l)
 
 /* ---- all that are found ---- */
 
-/* Of K x = 0, in double: a row for each direction, largest entry 1; returns how many */
-static int directions_without_stiffness(struct linearising *l, double *direction)
+/* Of A x = 0, in double: a row for each direction, largest entry 1; returns how many. A gets another one. */
+static int null_space(int n, double *A, double *direction)
 {
-	const int n = l->n;
-	double *K = stiffness_at(l);
-	int *pivot = ARRAY(int, n), rank = echelon_of(n, K, pivot), count = 0;
+	int *pivot = ARRAY(int, n), rank = echelon_of(n, A, pivot), count = 0;
 	for (int free = 0; free < n; free++) {
 		double *d = direction + count * n, largest = 1;
 		bool is_pivot = false;
@@ -377,7 +375,7 @@ static int directions_without_stiffness(struct linearising *l, double *direction
 		memset(d, 0, sizeof *d * (size_t)n);
 		d[free] = 1;
 		for (int i = 0; i < rank; i++)
-			largest = fmax(largest, fabs(d[pivot[i]] = -K[i * (n + 1) + free]));
+			largest = fmax(largest, fabs(d[pivot[i]] = -A[i * (n + 1) + free]));
 		for (int j = 0; j < n; j++)
 			d[j] /= largest;
 		count++;
@@ -450,8 +448,39 @@ void find_equilibria(struct linearising *l)
 		*found = (struct equilibrium){ .state = rationals((size_t)l->n), .free = ARRAY(double, l->n * l->n) };
 		for (int i = 0; i < l->n; i++)
 			mpq_set(found->state[i], l->state[i]);
-		found->directions = directions_without_stiffness(l, found->free);
+		found->directions = null_space(l->n, stiffness_at(l), found->free);
 	}
+}
+
+/* ---- symmetry ---- */
+
+/* Any values of coordinates, velocities and highest derivatives: multiples of the golden ratio, less whole numbers */
+static void start_anywhere(struct linearising *l, int which)
+{
+	for (int i = 0; i < l->states + l->n; i++) {
+		const double part = (which * (l->states + l->n) + i + 1) * 0.6180339887498949;
+		mpq_set_d(i < l->states ? l->state[i] : l->fixing[i].value, part - floor(part) + 0.1);
+	}
+}
+
+/* dF/dq d = 0 at a few points, in general position: A is the sum of K^T K at these, d its null space */
+void find_free_directions(struct linearising *l)
+{
+	enum { POINTS = 3 };
+	struct equations *e = &l->b->model->equations;
+	const int n = l->n, wide = n + 1;
+	double *A = ARRAY(double, n * wide);
+	e->free = ARRAY(double, n * n);
+	derive_residuals(l);
+	for (int point = 0; point < POINTS; point++) {
+		start_anywhere(l, point);
+		const double *K = stiffness_at(l);
+		for (int i = 0; i < n; i++)
+			for (int j = 0; j < n; j++)
+				for (int k = 0; k < n; k++)
+					A[i * wide + j] += K[k * wide + i] * K[k * wide + j];
+	}
+	e->directions = null_space(n, A, e->free);
 }
 
 /* ---- kinks ---- */

@@ -465,7 +465,7 @@ static void check_contacts(const struct building *b)
 
 /* By the residuals as they are written: solved for highest derivatives, forces on one coordinate would stand in all
  * equations that the mass matrix couples. */
-static void find_rest(struct linearising *l)
+static void with_written(struct linearising *l, void (*find)(struct linearising *l))
 {
 	const struct form **solved = l->residual;
 	struct collector *c = &l->b->collector;
@@ -475,7 +475,7 @@ static void find_rest(struct linearising *l)
 	l->residual = ARRAY(const struct form *, l->n);
 	for (int i = 0; i < l->n; i++)
 		l->residual[i] = without_loads(residual_as_written(l->b->full, l->b->owner, i));
-	(strcmp(l->b->request->linearise, EQUILIBRIA) == 0 ? find_equilibria : find_equilibrium)(l);
+	find(l);
 	l->residual = solved;
 	c->equation = false;
 	c->keep = (unsigned)keep;
@@ -499,7 +499,7 @@ static bool find_point(struct linearising *l)
 		return false;
 	}
 	if (l->rest)
-		find_rest(l);
+		with_written(l, strcmp(place, EQUILIBRIA) == 0 ? find_equilibria : find_equilibrium);
 	find_residuals(l);
 	return true;
 }
@@ -528,14 +528,9 @@ static void spell_places(const struct linearising *l)
 	}
 }
 
-void linearise(void *building)
+static struct linearising linearising_of(struct building *b)
 {
-	struct building *b = building;
-	struct model *model = b->model;
-	struct linearising l = { .b = b, .n = model->n, .states = model->system.states, .fall = 1e-4 };
-	size_t length;
-	char *text;
-	check_contacts(b);
+	struct linearising l = { .b = b, .n = b->model->n, .states = b->model->system.states, .fall = 1e-4 };
 	list_inputs(&l);
 	if (!b->full)
 		collect_full(b);
@@ -545,6 +540,23 @@ void linearise(void *building)
 	l.state = rationals((size_t)l.states);
 	l.F = rationals((size_t)l.n);
 	l.residual = ARRAY(const struct form *, l.n);
+	return l;
+}
+
+void find_symmetries(void *building)
+{
+	struct linearising l = linearising_of(building);
+	with_written(&l, find_free_directions);
+}
+
+void linearise(void *building)
+{
+	struct building *b = building;
+	struct model *model = b->model;
+	size_t length;
+	char *text;
+	check_contacts(b);
+	struct linearising l = linearising_of(b);
 	if (!find_point(&l))
 		return;
 	spell_places(&l);

@@ -34,6 +34,7 @@ bool is_equilibrium(const struct linearising *l);           /* F is 0 */
 /* From the point on, without velocities; leaves the statement where none is found */
 void find_equilibrium(struct linearising *l);
 void find_equilibria(struct linearising *l);                /* from many points, into the model's equations */
+void find_free_directions(struct linearising *l);           /* along which no equation changes; of the equations */
 /* Highest derivatives at the point, of which outputs may be functions: W^-1 (-F) */
 void find_highest(struct linearising *l);
 /* Slopes a hair beside the point, on both sides of it in each state, have to be those of the point. */

@@ -570,6 +570,8 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		if (model->nonlinear.terms > 0 || strcmp(request->linearise, EQUILIBRIA) == 0)
 			statement_guard(linearise, &b);
 	}
+	if (!diagnostics_errors() && request->explained && spec->energies)
+		silent_guard(find_symmetries, &b);
 	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
 		    request->again.undivided;
 	if (!diagnostics_errors() && !reported)

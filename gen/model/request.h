@@ -44,6 +44,7 @@ struct request {                    /* what the user asks for on the command lin
 	const char *linearise;
 	const char *moved_by;       /* the scheme that brought the states there; NULL: they were given */
 	const char *linearised_at;  /* the point that these linear equations are at; NULL: they are the model's own */
+	bool explained;             /* what holds of the equations is wanted too */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	struct definitions definitions;

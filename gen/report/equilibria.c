@@ -6,6 +6,7 @@
 #include "step/linear/images.h"
 
 #include <math.h>
+#include <string.h>
 
 struct found {                      /* one of them */
 	const struct model *model;
@@ -16,16 +17,15 @@ struct found {                      /* one of them */
 };
 
 /* x, or q[1] + 0.5*q[2] */
-static const char *direction_text(const struct found *f, int direction)
+static const char *direction_text(const struct model *model, const double *part)
 {
-	const double *part = f->at->free + direction * f->model->n;
 	const char *text = "";
-	for (int i = 0; i < f->model->n; i++) {
+	for (int i = 0; i < model->n; i++) {
 		const double size = fabs(part[i]);
 		if (size < 1e-9)
 			continue;
 		text = format("%s%s%s%s", text, part[i] < 0 ? *text ? " - " : "-" : *text ? " + " : "",
-			      fabs(size - 1) < 1e-9 ? "" : format("%.6g*", size), f->model->names.coord[i]);
+			      fabs(size - 1) < 1e-9 ? "" : format("%.6g*", size), model->names.coord[i]);
 	}
 	return text;
 }
@@ -37,7 +37,8 @@ static void text_one(FILE *to, const struct found *f, int number)
 		fprintf(to, "%s%s = %.10g", i ? ", " : "", f->model->names.coord[i], mpq_get_d(f->at->state[i]));
 	fprintf(to, "; %s", f->why ? format("it has no poles: %s", f->why) : stability_by_poles(f->poles, f->pole));
 	for (int k = 0; k < f->at->directions; k++)
-		fprintf(to, "%s%s", k ? ", " : "; no stiffness along ", direction_text(f, k));
+		fprintf(to, "%s%s", k ? ", " : "; no stiffness along ",
+			direction_text(f->model, f->at->free + k * f->model->n));
 	fprintf(to, "\n");
 	if (!f->why)
 		fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
@@ -54,10 +55,42 @@ static void json_one(FILE *to, const struct found *f, int number)
 	fprintf(to, "},\n  \"stability\": \"%s\",\n  \"free\": [",
 		f->why ? "unknown" : stability_by_poles(f->poles, f->pole));
 	for (int k = 0; k < f->at->directions; k++)
-		fprintf(to, "%s\"%s\"", k ? ", " : "", direction_text(f, k));
+		fprintf(to, "%s\"%s\"", k ? ", " : "", direction_text(f->model, f->at->free + k * f->model->n));
 	fputs("],\n", to);
 	json_pole_list(to, f->poles, f->pole);
 	fputs("}", to);
+}
+
+/* x; q[1] + q[2]: coordinates that no equation depends on, or combinations of several */
+static const char *free_text(const struct model *model, bool cyclic)
+{
+	const struct equations *e = &model->equations;
+	const char *text = "";
+	for (int k = 0; k < e->directions; k++) {
+		const char *direction = direction_text(model, e->free + k * model->n);
+		if (!strchr(direction, ' ') == cyclic)
+			text = format("%s%s%s", text, *text ? ", " : "", direction);
+	}
+	return text;
+}
+
+void text_symmetries(FILE *to, const struct model *model)
+{
+	const char *cyclic = free_text(model, true), *rigid = free_text(model, false);
+	if (*cyclic)
+		fprintf(to, "\nCyclic, as no equation depends on them: %s. Forces alone change their momentum.\n",
+			cyclic);
+	if (*rigid)
+		fprintf(to, "\nRigid directions, along which no equation changes: %s.\n", rigid);
+}
+
+void json_symmetries(FILE *to, const struct model *model)
+{
+	fputs("  \"free\": [", to);
+	for (int k = 0; k < model->equations.directions; k++)
+		fprintf(to, "%s\"%s\"", k ? ", " : "",
+			direction_text(model, model->equations.free + k * model->n));
+	fputs("],\n", to);
 }
 
 void print_equilibria(FILE *to, const struct model *model, bool json,

@@ -369,6 +369,7 @@ void text_equations(FILE *to, const struct step *step)
 		for (int i = 0; i < model->written->n; i++)
 			fprintf(to, "    %s\n", equation_text(model->written, written_residual(model, i)));
 	}
+	text_symmetries(to, model->written);
 }
 
 void text_course(FILE *to, const struct step *step)

@@ -27,13 +27,6 @@ static void json_rational_matrix(FILE *to, const char *key, int n, const mpq_t *
 	fputs(",\n", to);
 }
 
-static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
-{
-	double im = mpfr_get_d(pole->im, MPFR_RNDN);
-	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",",
-		json_number(mpfr_get_d(pole->re, MPFR_RNDN)), json_number(conjugate ? -im : im), pole->multiplicity);
-}
-
 /* One mode for each pair of poles, for each real pole, and for each two poles at 0 (a rigid body). */
 static void json_modes(FILE *to, int count, const struct pole_report *pole)
 {
@@ -47,17 +40,6 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 				json_number(mpfr_get_d(pole[i].damping_ratio, MPFR_RNDN)));
 	}
 	fputs("],\n", to);
-}
-
-void json_pole_list(FILE *to, int count, const struct pole_report *pole)
-{
-	fputs("  \"poles\": [", to);
-	for (int i = 0; i < count; i++) {
-		json_pole(to, &pole[i], false, i == 0);
-		if (pole[i].pair)
-			json_pole(to, &pole[i], true, false);
-	}
-	fputs("]", to);
 }
 
 static void json_poles(FILE *to, const struct step *step)
@@ -299,6 +281,8 @@ void explain_json(FILE *to, const struct step *step)
 		json_assembly(to, model->spec);
 	if (model->spec->drawings)
 		json_drawings(to, model->spec);
+	if (model->spec->energies)
+		json_symmetries(to, model->written);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));
 	json_rational_matrix(to, "M", model->written->n, model->written->system.M);

@@ -34,6 +34,24 @@ double growth_rate(const struct step *step)
 	return mpfr_get_d(step->linear.growth, MPFR_RNDN);
 }
 
+static void json_pole(FILE *to, const struct pole_report *pole, bool conjugate, bool first)
+{
+	double im = mpfr_get_d(pole->im, MPFR_RNDN);
+	fprintf(to, "%s\n    {\"re\": %s, \"im\": %s, \"multiplicity\": %d}", first ? "" : ",",
+		json_number(mpfr_get_d(pole->re, MPFR_RNDN)), json_number(conjugate ? -im : im), pole->multiplicity);
+}
+
+void json_pole_list(FILE *to, int count, const struct pole_report *pole)
+{
+	fputs("  \"poles\": [", to);
+	for (int i = 0; i < count; i++) {
+		json_pole(to, &pole[i], false, i == 0);
+		if (pole[i].pair)
+			json_pole(to, &pole[i], true, false);
+	}
+	fputs("]", to);
+}
+
 const char *polynomial_text(int length, const mpq_t *c)
 {
 	const char *text = "";

@@ -59,6 +59,8 @@ void need_linear(const struct step *step, const char *what); /* "poles"; leaves 
 
 /* ---- equilibria.c: those that were found, and their linear equations ---- */
 
+void text_symmetries(FILE *to, const struct model *model);  /* of coordinates, or nothing */
+void json_symmetries(FILE *to, const struct model *model);  /* a member of an object */
 /* `linear`: the linear equations at such a place, *why NULL; else why there are none */
 void print_equilibria(FILE *to, const struct model *model, bool json,
 		      const struct model *(*linear)(void *context, const char *place, const char **why), void *context);

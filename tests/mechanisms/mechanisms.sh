@@ -142,6 +142,12 @@ result $? 'all equilibria of a potential with two wells'
 "$PLGEN" --explain=json "$root/models/swing_arm.spec" 2>log | grep -A 3 drawing >>log
 grep -qF '"what": "wheel", "at": ["across", "wheel"], "radius": "r"}]' log && grep -qF '"from": ["0", "z"], "to"' log
 result $? 'what is drawn, for a program'
+# A chain without weight turns as a whole; a cart without friction moves; a weight holds the chain
+sed -e '/^energy/s/, V.*//' "$cases/triple.spec" >turning.spec
+"$PLGEN" --explain turning.spec 2>log | grep -qF 'no equation changes: q[1] + q[2] + q[3].' &&
+	"$PLGEN" --explain "$root/models/cart_pole.spec" 2>log | grep -qF 'no equation depends on them: x.' &&
+	"$PLGEN" --explain=json "$cases/triple.spec" 2>log | grep -qF '"free": []'
+result $? 'cyclic coordinates and rigid directions'
 # What falls has none
 cat >falls.spec <<'SPEC'
 model falls

@@ -58,6 +58,8 @@ struct equations {                  /* as they are written */
 	const struct node *moving_mass; /* a term by which the mass matrix is not constant; NULL: it is */
 	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
 	const char *linearised, *point;
+	int directions;             /* of coordinates, along which no equation changes: rows, largest entry 1 */
+	double *free;
 	int starts, equilibria;     /* where they were searched for: from so many points, so many were found */
 	struct equilibrium *equilibrium;
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
