@@ -255,15 +255,14 @@ END {
 		" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
 	print "<!-- " by " -->"
 	if (markers) {
-		printf "<defs>\n"
+		printf "<style>marker { overflow: visible; fill: none }</style>\n<defs>\n"
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
 			printf "%s", define(part[1])
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker" said("id", "m" m) said("fill", "none") said("overflow", "visible") \
-				said("markerUnits", "userSpaceOnUse") "><use" said("xlink:href", "#" part[1]) \
+			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" said("xlink:href", "#" part[1]) \
 				said("transform", "scale(" part[2] ")") said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"

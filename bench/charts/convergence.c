@@ -82,7 +82,7 @@ static void write_curve(FILE *csv, const struct curve *curve, const char *system
 				fputs("none", csv);
 			else if (k > 0)
 				print_order(csv, curve, i, intervals, k - 1, k);
-			fprintf(csv, ",\"%s\"\n", curve->refused ? curve->refused : curve->method->settings);
+			fputc('\n', csv);
 		}
 }
 
@@ -98,7 +98,7 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 		print_order(csv, curve, i, intervals, 0, count - 1);
 		fputc(',', csv);
 		print_order(csv, curve, i, intervals, count - 2, count - 1);
-		fputc('\n', csv);
+		fprintf(csv, ",\"%s\"\n", curve->refused ? curve->refused : curve->method->settings);
 	}
 }
 
@@ -125,9 +125,9 @@ int main(int argc, char **argv)
 {
 	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "convergence [--quick] VARIANTS FOLDER");
 	FILE *csv = table_open(argv[1], "convergence.csv", "system,horizon_s,intervals_in_30_s,h_s,method,"
-	                       "error_over_initial_displacement,order_since_last,settings");
+	                       "error_over_initial_displacement,order_since_last");
 	FILE *orders = table_open(argv[1], "convergence_orders.csv",
-	                          "system,horizon_s,method,order_expected,order_over_range,order_at_last");
+	                          "system,horizon_s,method,order_expected,order_over_range,order_at_last,settings");
 	for (size_t i = 0; i < sizeof systems / sizeof *systems; i++)
 		converge(systems[i].name, systems[i].frequency, argv[0], quick ? quick_intervals : all_intervals, csv,
 		         orders);
