@@ -262,8 +262,9 @@ END {
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" said("xlink:href", "#" part[1]) \
-				said("transform", "scale(" part[2] ")") said("color", part[3]) "/></marker>"
+			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" \
+				said("xlink:href", "#" part[1]) said("transform", "scale(" part[2] ")") \
+				said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
 	}
