@@ -209,6 +209,24 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 	return error;
 }
 
+/* NULL: the instance has the job's params. Else why not, by the name of the first whose value alone does not do */
+static char *tuning_error(const struct job *job, struct instance *s)
+{
+	const struct machine *m = job->machine;
+	const char *wrong = instance_retune(s, job->params, job->h);
+	if (!wrong)
+		return NULL;
+	double *one = need(malloc(sizeof *one * (size_t)m->params));
+	char *error = NULL;
+	for (int k = 0; k < m->params && !error && !instance_retune(s, m->param_values, job->h); k++) {
+		memcpy(one, m->param_values, sizeof *one * (size_t)m->params);
+		one[k] = job->params[k];
+		error = instance_retune(s, one, job->h) ? format("%s: %s", m->param_names[k], wrong) : NULL;
+	}
+	free(one);
+	return error ? error : format("%s", wrong);
+}
+
 char *run_steps(const struct job *job, watch *each, void *who)
 {
 	const struct machine *m = job->machine;
@@ -218,8 +236,7 @@ char *run_steps(const struct job *job, watch *each, void *who)
 	double *out = need(malloc(sizeof *out * (size_t)(m->outputs + 1)));
 	w.row = need(calloc(((size_t)m->most_ahead + 1) * n + 1, sizeof *w.row));
 	w.u = need(calloc(n + 1, sizeof *w.u));
-	const char *wrong = job->params ? instance_retune(s, job->params, job->h) : NULL;
-	char *error = wrong ? format("%s", wrong) : NULL;
+	char *error = job->params ? tuning_error(job, s) : NULL;
 	if (!error) {
 		if (job->record && job->steps + (uint64_t)m->most_ahead > 0)
 			begin_samples(&w, s);
