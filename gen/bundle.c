@@ -276,7 +276,7 @@ void bundle(struct file *code, struct file *header, const char *more, bool singl
 	/* what a program asks of a model */
 	if (header) {
 		use_words(r, "PL_NOT_FINITE PL_TOO_MANY_STEPS PL_TOO_MANY_EVENTS PL_UNDECIDED", IN_HEADER);
-		use_words(r, "PL_PENETRATED PL_LEFT_RANGE PL_SINGULAR PL_MODEL_VERSION", IN_HEADER);
+		use_words(r, "PL_PENETRATED PL_SINGULAR_MASS PL_LEFT_RANGE PL_SINGULAR PL_MODEL_VERSION", IN_HEADER);
 		use_words(r, header->text, IN_HEADER);
 		use_words(r, more ? more : "", IN_HEADER);
 	}

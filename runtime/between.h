@@ -208,13 +208,18 @@ static inline int PL(go_on)(PL(piece) *p, real size)
         p->y[i] = pl_accumulate(p->y[i], gain[i], 0, &p->low[i]);
     }
     p->done = size < p->limit - p->done ? p->done + size : p->limit;
+#if PL_CONSTRAINTS
+    return PL(project)(p->s, p->done * PL_H, p->y, p->low);
+#else
     return 0;
+#endif
 }
 
 /* The next part: 0, or what went wrong */
 static inline int PL(advance)(PL(piece) *p, int *inaccurate)
 {
     const int begun = PL(expand_piece)(p);
+    int wrong;
     real size;
 #if PL_SWITCHING_FUNCTIONS > 0
     real meets;
@@ -238,8 +243,9 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
     *inaccurate = !PL(is_accurate)(p->s, (const real (*)[PL_COLUMNS])p->c, size) || *inaccurate;
 #endif
     (void)inaccurate;
-    if (PL(go_on)(p, size) != 0) {
-        return PL_LOST;
+    wrong = PL(go_on)(p, size);
+    if (wrong != 0) {
+        return wrong == PL_NOT_FINITE ? PL_LOST : wrong;
     }
 #if PL_SWITCHING_FUNCTIONS > 0
     if (meets < 0) {

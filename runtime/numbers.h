@@ -38,6 +38,9 @@
 #ifndef PL_CONTACTS
 #define PL_CONTACTS 0
 #endif
+#ifndef PL_CONSTRAINTS
+#define PL_CONSTRAINTS 0
+#endif
 #ifndef PL_CONVERTED
 #define PL_CONVERTED 0
 #endif

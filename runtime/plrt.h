@@ -326,7 +326,9 @@ enum {
     PL_INACCURATE = 8,      /* The last terms of a Taylor series were above the tolerance. */
     PL_UNDECIDED = 16,      /* No combination of sticking and slipping met all conditions; the nearest was taken. */
     PL_LEFT_RANGE = 32,     /* At the end of a step a state was outside the range that the spec gives it. */
-    PL_PENETRATED = 64      /* A step ended beyond a stop by more than rounding: that contact is lost. */
+    PL_PENETRATED = 64,     /* A step ended beyond a stop by more than rounding: that contact is lost. */
+    /* The mass matrix is singular, or gradients of constraints depend on each other: the state is the last good one. */
+    PL_SINGULAR_MASS = 128
 };
 
 /* NAME_retune returns 0, PL_NOT_FINITE or one of these; unless it returns 0 the coefficients are unchanged. */

@@ -29,6 +29,7 @@
  *     PL(within)(s, theta)       s->y then, of s->series
  *     PL(total)(c, y, end, rest) the sum of a series of fixed order, in the same way
  *     PL(pass_time)(s, u)        what else takes part in a step moves on
+ *     PL_CONSTRAINTS             some hold: PL(misses) of constraints.h
  *
  * Each model has a copy of its own, in which the numbers of states and orders are constants. */
 #include "numbers.h"
@@ -49,6 +50,13 @@ static inline void PL(inputs_now)(const PL_TYPE *s, const real u[], real start[]
     (void)s;
     (void)u;
 }
+#endif
+
+#if PL_CONSTRAINTS
+#include "constraints.h"
+#define PL_PUT_BACK(s, tau, y) (void)PL(project_rounded)(s, tau, y)
+#else
+#define PL_PUT_BACK(s, tau, y) (void)(y)
 #endif
 
 /* ---- the sum of a series ---- */
@@ -354,6 +362,11 @@ static void PL(renew)(PL_TYPE *s, const real u[])
         if (PL(is_lost)(s->next)) {
             s->valid = s->most = 0;
         }
+#if PL_CONSTRAINTS
+        if (s->valid && PL(project)(s, (real)s->valid * PL_H, s->next, s->left)) {
+            s->valid = s->most = 0;
+        }
+#endif
     }
 }
 
@@ -363,6 +376,9 @@ static PL_APART void PL(inside)(PL_TYPE *s)
 {
     PL(within)(s, (real)(s->served + 1));
     s->served++;
+#if PL_CONSTRAINTS
+    s->status |= PL(project_rounded)(s, PL_H, s->y);
+#endif
 #if PL_SWITCHING_FUNCTIONS > 0
     s->contact.crossings = 0;
 #endif
@@ -428,6 +444,9 @@ static void PL(renew)(PL_TYPE *s, const real u[])
         s->left[i] = s->low[i];
     }
     PL(total)((const real (*)[PL_COLUMNS])s->series, s->y, s->next, s->left);
+#if PL_CONSTRAINTS
+    s->status |= PL(project)(s, PL_OVER * PL_H, s->next, s->left);
+#endif
 #if PL_WATCHED
     if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])s->series, 1)) {
         s->status |= PL_INACCURATE;
@@ -453,6 +472,9 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     }
     if (++s->served < PL_OVER) {
         PL(within)(s, PL(part_of)[s->served - 1]);
+#if PL_CONSTRAINTS
+        s->status |= PL(project_rounded)(s, PL_H, s->y);
+#endif
     } else {
         s->served = 0;
         PL(take_end)(s);
@@ -492,6 +514,9 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
         low[i] = s->low[i];
     }
     PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
+#if PL_CONSTRAINTS
+    s->status |= PL(project)(s, PL_H, next, low);
+#endif
 #if PL_WATCHED
     if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
         s->status |= PL_INACCURATE;
@@ -559,6 +584,7 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, re
     const int fresh = !s->most;
     if (s->served < s->valid) {
         PL(state_within)(s, (real)s->served + tau / PL_H, y);
+        PL_PUT_BACK(s, tau, y);
         return;
     }
 #else
@@ -567,6 +593,7 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, re
 #if PL_OVER > 1
     if (s->served > 0) {
         PL(state_within)(s, ((real)s->served + tau / PL_H) / PL_OVER, y);
+        PL_PUT_BACK(s, tau, y);
         return;
     }
 #endif
@@ -588,6 +615,7 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, re
     for (i = 0; i < PL_STATES; i++) {
         y[i] = s->y[i] + (gain[i] + s->low[i]);
     }
+    PL_PUT_BACK(s, tau, y);
     (void)fresh;
 #endif
 }

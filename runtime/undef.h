@@ -41,6 +41,7 @@
 #undef PL_CHOICES
 #undef PL_EVENT_FREE
 #undef PL_COLUMNS
+#undef PL_CONSTRAINTS
 #undef PL_CONTACTS
 #undef PL_CONVERTED
 #undef PL_COORDS
@@ -224,7 +225,9 @@
 #undef PL_SWEEPS
 #undef PL_FAST_PATH
 #undef PL_TABLES
+#undef PL_PASSES
 #undef PL_PAST_SAMPLES
+#undef PL_PUT_BACK
 #undef PL_TERMS
 #undef PL_TOLERANCE
 #undef PL_TRACE

@@ -299,11 +299,12 @@ static struct form *place_form(struct point *p, const struct form *form);
 
 static mpq_srcptr fixed_value(const struct point *p, const struct basis *basis)
 {
-	const enum symbol_kind kind = basis->kind == BASIS_INPUT ? SYMBOL_INPUT : SYMBOL_COORD;
+	const bool input = basis->kind == BASIS_INPUT;
 	for (int i = 0; i < p->fixings; i++) {
 		const struct fixing *f = &p->fixing[i];
-		if (f->symbol && f->symbol->kind == kind && f->coord == basis->index &&
-		    f->order == basis->order)
+		const enum symbol_kind kind = f->symbol ? f->symbol->kind : SYMBOL_LET;
+		if ((input ? kind == SYMBOL_INPUT : kind == SYMBOL_COORD || kind == SYMBOL_MULTIPLIER) &&
+		    f->coord == basis->index && f->order == basis->order)
 			return f->value;
 	}
 	return NULL;

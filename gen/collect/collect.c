@@ -418,6 +418,17 @@ static struct value *collect_tuned(struct collector *c, struct node *node)
 	return scalar(kept_param(c, node, symbol));
 }
 
+static struct value *collect_multiplier(struct collector *c, struct node *node)
+{
+	const int index = node->symbol->index;
+	need_constant(c, node, format("constraint '%s'", node->symbol->name));
+	if (c->equation)
+		return scalar(form_unit(multiplier_basis(c->frame, index)));
+	if (!c->multiplier || !c->output)
+		not_linear(c, node, "is a multiplier, which follows from all equations");
+	return scalar(form_alias(c->multiplier[index]));
+}
+
 static struct value *collect_name(struct collector *c, struct node *node)
 {
 	struct symbol *symbol = node->symbol;
@@ -425,6 +436,8 @@ static struct value *collect_name(struct collector *c, struct node *node)
 		abandon();
 	if (symbol->kind == SYMBOL_COORD)
 		return collect_coordinate(c, node);
+	if (symbol->kind == SYMBOL_MULTIPLIER)
+		return collect_multiplier(c, node);
 	if (symbol->kind == SYMBOL_INPUT) {
 		need_constant(c, node, format("input '%s'", symbol->name));
 		return scalar(form_unit(

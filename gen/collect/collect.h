@@ -11,6 +11,7 @@ struct collector;
 struct frame {                      /* the coordinates that forms are over */
 	struct symbol **coord;      /* one a coordinate, `highest` its order */
 	struct form **const *form;  /* [derivative][written coordinate]: over them; NULL: they are the written ones */
+	int coords;                 /* behind them come multipliers of constraints, in forms of equations alone */
 };
 enum basis_kind { BASIS_ONE, BASIS_PI, BASIS_FORCING, BASIS_INPUT, BASIS_COORD, BASIS_ATOM };
 struct basis {
@@ -74,6 +75,7 @@ bool same_form(const struct form *a, const struct form *b);
 /* it depends on one; a coordinate of first order is one too */
 bool is_velocity(const struct frame *frame, const struct basis *basis);
 bool is_highest(const struct frame *frame, const struct basis *basis); /* the highest derivative of a coordinate */
+struct basis multiplier_basis(const struct frame *frame, int constraint); /* as if it were an acceleration */
 /* of a written coordinate; `frame` NULL: over itself */
 struct form *coordinate_form(const struct frame *frame, int coord, int order);
 
@@ -106,6 +108,8 @@ struct collector {
 	bool equation;              /* an equation is: with KEEP_ALL they may have factors of the state */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
+	/* in outputs: per constraint its multiplier, solved for; NULL: that is not known yet */
+	struct form **multiplier;
 	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec, but for
 	 * factors, which are numbers, and in outputs atoms */
 	enum { PARAMS_VALUES, PARAMS_ATOMS, PARAMS_INPUTS } params;

@@ -318,6 +318,11 @@ bool same_form(const struct form *a, const struct form *b)
 	return true;
 }
 
+struct basis multiplier_basis(const struct frame *frame, int constraint)
+{
+	return (struct basis){ .kind = BASIS_COORD, .index = frame->coords + constraint, .order = 2 };
+}
+
 bool is_highest(const struct frame *frame, const struct basis *basis)
 {
 	return basis->kind == BASIS_COORD && basis->order > 0 && basis->order >= frame->coord[basis->index]->highest;

@@ -56,6 +56,10 @@ void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
 bool rhs_needs_math(const struct emitter *e);
 
+/* ---- emit_constraints.c ---- */
+
+void emit_constraints(const struct emitter *e);                   /* NAME_misses, where there are some */
+
 /* ---- emit_normal.c: steps in normal modes ---- */
 
 void emit_normal_members(const struct emitter *e);

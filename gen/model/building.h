@@ -33,6 +33,11 @@ struct building {                   /* what the builders share */
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
 	int *owner;                 /* per coordinate: its residual */
 };
+struct constraint {
+	const struct energy *statement;
+	/* by[0]: what is 0, by[1], by[2]: its derivatives in time; of one on velocities by[0] is NULL, by[1] is 0 */
+	const struct form *by[3];
+};
 struct segment_equations {          /* the equations and outputs in one interval of time */
 	int residuals, written;     /* all; those of written equations come first */
 	struct residual *residual;
@@ -41,6 +46,8 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct impact_law **impact_law; /* per `when` and stop; NULL: it has been told */
 	int masses;                 /* blocks of equations in which the mass matrix moves */
 	struct moving_mass { const struct node *node; struct linear_system system; } *mass;
+	struct constraint *constraint; /* one per multiplier */
+	struct form **multiplier;   /* solved for */
 };
 
 /* ---- equations.c: equations and sketches to residuals ---- */

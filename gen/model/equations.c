@@ -99,7 +99,7 @@ void collect_equations(struct building *b, struct segment_equations *segment_equ
 			statement_guard(collect_equation, &(struct indexed){ b, segment_equations, i, NULL });
 	segment_equations->written = segment_equations->residuals;
 	segment_equations->element = ARRAY(struct form *, b->spec->elements);
-	struct form **terms = b->spec->energies && *changes == known ? lagrange_terms(b) : NULL;
+	struct form **terms = b->spec->energies && *changes == known ? lagrange_terms(b, segment_equations) : NULL;
 	for (int i = 0; i < b->spec->elements && *changes == known; i++)
 		statement_guard(collect_element, &(struct indexed){ b, segment_equations, i, terms });
 	b->collector.equation = false;
@@ -149,7 +149,9 @@ static const struct element *find_mass(const struct spec *spec, int coord)
 /* A coordinate is of second order if its acceleration stands in an equation or a mass at it. */
 int find_order(const struct spec *spec, int coord)
 {
-	return find_mass(spec, coord) || has_kinetic_energy(spec, coord) || find_in_equations(spec, coord, 2) ? 2 : 1;
+	if (find_mass(spec, coord) || has_kinetic_energy(spec, coord) || find_in_equations(spec, coord, 2))
+		return 2;
+	return is_constrained(spec, coord) && !find_in_equations(spec, coord, 1) ? 2 : 1;
 }
 
 /* ---- does each coordinate have its equation? ---- */

@@ -8,7 +8,9 @@
  *
  *     sum over w of (dT/dw)' dr/dq - dT/dq with w fixed
  *
- * A chain of n links then has products of the order of n, not of n^2. */
+ * A chain of n links then has products of the order of n, not of n^2.
+ *
+ * A constraint g = 0 adds its multiplier times dg/dq, one on velocities its multiplier times dg/dq'. */
 #include "building.h"
 #include "lagrange.h"
 #include "model/contacts/friction.h"
@@ -207,18 +209,63 @@ static const struct form *scalar_of(const struct value *value, const struct node
 
 static void check_energy(struct building *b, const struct energy *energy, const struct form *form)
 {
+	const bool differentiated = energy->kind == 'T' || energy->kind == 'G';
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct basis *basis = &(*term)->basis;
-		const bool input = basis->kind == BASIS_INPUT && energy->kind == 'T';
+		const bool input = basis->kind == BASIS_INPUT && differentiated;
 		if ((basis->kind == BASIS_COORD && basis->order == 2) || input)
 			error(energy->value->start, input ? "a load of time, or a coordinate, moves it" : NULL,
-			      "the energy reads %s, of which a derivative would be needed",
-			      input ? "an input" : "an acceleration");
+			      "the %s reads %s, of which a derivative would be needed",
+			      energy->kind == 'G' ? "constraint" : "energy", input ? "an input" : "an acceleration");
 	}
 }
 
-static void add_energy(struct building *b, const struct energy *energy, struct form **force)
+/* ---- constraints ---- */
+
+static bool moves_by_rates(const struct building *b, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool reads = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		reads = reads || ((*term)->basis.kind == BASIS_COORD && (*term)->basis.order == 1);
+	return reads;
+}
+
+/* What it constrains has accelerations, of which its last derivative holds some. */
+static void check_constraint(const struct building *b, const struct energy *energy, const struct form *form)
+{
+	const struct model *model = b->model;
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool any = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct basis *basis = &(*term)->basis;
+		any = any || basis->kind == BASIS_COORD;
+		if (basis->kind == BASIS_COORD && model->system.velocity[basis->index] < 0)
+			error(energy->value->start, "constraints hold coordinates of second order, by forces",
+			      "'%s' is of first order: no force acts on it", model->names.coord[basis->index]);
+	}
+	if (!any)
+		error(energy->value->start, NULL, "no coordinate stands in the constraint '%s'",
+		      energy->multiplier->name);
+}
+
+static void add_constraint(struct building *b, const struct energy *energy, const struct form *form,
+			   struct segment_equations *s, struct form **force)
+{
+	const int index = energy->multiplier->index;
+	struct constraint *constraint = &s->constraint[index];
+	check_constraint(b, energy, form);
+	const int first = moves_by_rates(b, form);
+	constraint->statement = energy;
+	constraint->by[first] = form;
+	for (int k = first; k < 2; k++)
+		constraint->by[k + 1] = form_rate(rates_new(&b->collector, rate_of_term, b), constraint->by[k]);
+	add_gradient(b, form, form_unit(multiplier_basis(&b->model->frame, index)), first, force);
+}
+
+static void add_energy(struct building *b, const struct energy *energy, struct segment_equations *s,
+		       struct form **force)
 {
 	struct collector *c = &b->collector;
 	for (int i = 0; i < (energy->point ? energy->point->children : 0); i++) {
@@ -232,12 +279,15 @@ static void add_energy(struct building *b, const struct energy *energy, struct f
 	check_energy(b, energy, form);
 	if (energy->kind == 'T')
 		add_kinetic(b, form, force);
+	else if (energy->kind == 'G')
+		add_constraint(b, energy, form, s, force);
 	else
 		add_gradient(b, form, form_number(1), energy->kind == 'D', force);
 }
 
 struct adding {
 	struct building *b;
+	struct segment_equations *s;
 	struct form **force;
 	const struct energy *energy;
 };
@@ -245,16 +295,17 @@ struct adding {
 static void add_guarded(void *context)
 {
 	const struct adding *a = context;
-	add_energy(a->b, a->energy, a->force);
+	add_energy(a->b, a->energy, a->s, a->force);
 }
 
-struct form **lagrange_terms(struct building *b)
+struct form **lagrange_terms(struct building *b, struct segment_equations *s)
 {
 	struct form **force = ARRAY(struct form *, b->model->n);
 	const int keep = (int)b->collector.keep;
 	b->collector.keep = KEEP_ALL;
+	s->constraint = ARRAY(struct constraint, (size_t)b->spec->count.multipliers + 1);
 	for (int i = 0; i < b->spec->energies; i++)
-		statement_guard(add_guarded, &(struct adding){ b, force, &b->spec->energy[i] });
+		statement_guard(add_guarded, &(struct adding){ b, s, force, &b->spec->energy[i] });
 	b->collector.keep = (unsigned)keep;
 	for (int j = 0; j < b->model->n; j++)
 		force[j] = force[j] ? force[j] : NEW(struct form);

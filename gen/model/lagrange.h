@@ -5,8 +5,10 @@
 
 struct building;
 struct form;
+struct segment_equations;
 
-/* Per coordinate: what the energies and the forces at points add to the left side of its equation [N, or N m] */
-struct form **lagrange_terms(struct building *b);
+/* Per coordinate: what the energies, the forces at points and constraints add to the left side of its equation [N, or
+ * N m]; the constraints into `s` */
+struct form **lagrange_terms(struct building *b, struct segment_equations *s);
 
 #endif

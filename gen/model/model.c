@@ -203,6 +203,7 @@ static void name_relative(struct building *b)
 	size_t n = (size_t)relative->n;
 	model->n = model->system.n = relative->n;
 	model->frame.coord = ARRAY(struct symbol *, n);
+	model->frame.coords = relative->n;
 	model->names.coord = relative->name;
 	model->equations.owner = ARRAY(int, n);
 	for (int j = 0; j < relative->n; j++) {
@@ -227,9 +228,16 @@ static void name_coordinates(struct building *b)
 	}
 	size_t n = (size_t)b->spec->count.components;
 	model->n = model->system.n = b->spec->count.components;
-	model->frame.coord = ARRAY(struct symbol *, n);
-	model->names.coord = ARRAY(const char *, n);
+	const size_t all = n + (size_t)b->spec->count.multipliers;
+	model->frame.coords = model->n;
+	model->frame.coord = ARRAY(struct symbol *, all);
+	model->names.coord = ARRAY(const char *, all);
 	for (struct symbol *s = b->spec->first; s; s = s->next) {
+		if (s->kind == SYMBOL_MULTIPLIER && !s->broken) {
+			model->frame.coord[model->n + s->index] = s;
+			model->names.coord[model->n + s->index] = s->name;
+			s->highest = 2;         /* as if it were an acceleration */
+		}
 		if (s->kind != SYMBOL_COORD)
 			continue;
 		for (int i = 0; i < (s->length ? s->length : 1); i++) {

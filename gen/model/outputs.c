@@ -197,6 +197,7 @@ static void collect_left(void *context)
 	int keep = (int)c->keep;
 	c->keep = KEEP_ALL;
 	c->whole_time = c->output = c->reading = true;
+	c->multiplier = (work->b->full ? work->b->full : work->b->segment_equations)->multiplier;
 	forget_lets(work->b->spec);
 	collect_output(work);
 	c->keep = (unsigned)keep;

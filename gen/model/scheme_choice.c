@@ -268,8 +268,8 @@ static void find_obstacle(void *context)
 static enum scheme scheme_of_choice(const struct building *b)
 {
 	bool many = b->model->system.states > LIMIT_UNROLLED_STATES;
-	if (b->model->contacts.impacts > 0 || holds_friction(b))
-		return SCHEME_TAYLOR;           /* no other goes from event to event */
+	if (b->model->contacts.impacts > 0 || holds_friction(b) || b->spec->count.multipliers > 0)
+		return SCHEME_TAYLOR;           /* no other goes from event to event, or projects */
 	if (b->request->passed_over || b->request->loads_left)
 		return default_scheme();
 	return !b->spec->operators.given ? SCHEME_TAYLOR : many ? SCHEME_ETDAM4 : default_scheme();
@@ -301,6 +301,13 @@ static void resolve_impacts(void *context)
 		abandon();
 }
 
+static void refuse_beside_constraints(void *context)
+{
+	const struct building *b = context;
+	const struct place at = b->segment_equations->constraint[0].statement->at;
+	refuse(CAN_CONTACTS, b->model, b->spec->whens > 0 ? b->spec->when->at : at);
+}
+
 static void report_friction_stands(void *context)
 {
 	report_no_friction(context);
@@ -329,13 +336,16 @@ static bool choose_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->contacts.impacts == 0;
+	const bool constrained = b->spec->count.multipliers > 0, exact = !constrained && is_piecewise_linear(b);
+	if (constrained && (model->contacts.impacts > 0 || holds_friction(b)))
+		return statement_guard(refuse_beside_constraints, b);
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(report_friction_stands, b);
-	if (!linear && !model->request.scheme_at.source && !b->request->solution && !is_piecewise_linear(b)) {
+	if ((!linear || constrained) && !model->request.scheme_at.source && !b->request->solution && !exact) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
 		silent_guard(find_obstacle, b);
@@ -372,7 +382,7 @@ static bool is_stiff(struct building *b)
 	struct model *model = b->model;
 	struct jacobian j = { .b = b, .damped = true, .state = model->initial };
 	mpq_init(j.t);
-	const bool moves = b->full->masses > 0, equation = b->collector.equation;
+	const bool moves = b->full->masses > 0 && !b->spec->count.multipliers, equation = b->collector.equation;
 	b->collector.equation = moves;
 	bool known = moves ? silent_guard(jacobian_of_motion, &j)
 			   : silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);
@@ -418,6 +428,8 @@ void build_system(struct building *b)
 	model->equations.residual = rows->residual;
 	model->equations.segment_equations = b->segment_equations;
 	model->equations.full = b->full;
+	if (b->spec->count.multipliers > 0 && !diagnostics_errors())
+		keep_constraints(b);
 	if (b->full && !diagnostics_errors())
 		check_mass_at_start(b);
 	if (b->full && !diagnostics_errors())

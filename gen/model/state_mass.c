@@ -2,7 +2,10 @@
 /* Equations in which highest derivatives have factors of the state, of time or of tunable params: M(q) q'' = f. They
  * are linear in q'', so M is the derivative of the residuals by q'', and f is what they are without. Equations that M
  * couples are solved together: q_j'' - (M^-1 f)_j takes the place of each, an atom that schemes treat as any other.
- * Blocks in which M is constant stay as they are, for the exact linear core. */
+ * Blocks in which M is constant stay as they are, for the exact linear core.
+ *
+ * Constraints g = 0 are rows too, of their last derivative G q'' + ..., and their multipliers columns, of G^T: index 3
+ * as it stands, since a series has no order to lose; what rounding takes from g is projected out (constraints.h). */
 #include "building.h"
 #include "checks.h"
 #include "math/math.h"
@@ -11,7 +14,7 @@
 struct solving {
 	struct building *b;
 	struct segment_equations *s;
-	int n;
+	int coords, n;              /* coordinates, and multipliers behind them, as rows of constraints behind others */
 	struct form **M;            /* [row][coordinate]: of the residuals */
 	struct point *rest;         /* where highest derivatives are 0 */
 	int *block;                 /* rows, then coordinates: parent pointers */
@@ -19,7 +22,18 @@ struct solving {
 
 static int highest_order(const struct building *b, int coord)
 {
-	return b->model->system.velocity[coord] >= 0 ? 2 : 1;
+	return coord >= b->model->n || b->model->system.velocity[coord] >= 0 ? 2 : 1;
+}
+
+static const struct form *residual_of(const struct solving *w, int row)
+{
+	return row < w->coords ? w->s->residual[row].form : w->s->constraint[row - w->coords].by[2];
+}
+
+/* The row of a coordinate, or of the constraint of a multiplier */
+static int row_of(const struct solving *w, int coord)
+{
+	return coord < w->coords ? w->b->owner[coord] : coord;
 }
 
 /* The first atom in which a highest derivative stands; NULL: there is none */
@@ -101,7 +115,7 @@ static void find_column(struct solving *w, int coord)
 {
 	const struct form **residual = ARRAY(const struct form *, w->n);
 	for (int i = 0; i < w->n; i++)
-		residual[i] = w->s->residual[i].form;
+		residual[i] = residual_of(w, i);
 	struct form **slope = form_derivatives(&w->b->collector, w->n, residual, false, coord,
 					       highest_order(w->b, coord));
 	for (int i = 0; i < w->n; i++)
@@ -111,7 +125,7 @@ static void find_column(struct solving *w, int coord)
 /* The residual where highest derivatives are 0; terms without them stay as they are written */
 static struct form *remaining(const struct solving *w, int row)
 {
-	const struct form *residual = w->s->residual[row].form;
+	const struct form *residual = residual_of(w, row);
 	struct form *rest = NEW(struct form);
 	for (int i = 0; i < residual->terms; i++) {
 		const struct form_term *term = &residual->term[i];
@@ -126,9 +140,8 @@ static struct form *remaining(const struct solving *w, int row)
 	return rest;
 }
 
-static struct point *point_at_rest(struct building *b)
+static struct point *point_at_rest(struct building *b, int n)
 {
-	int n = b->model->n;
 	struct fixing *fixing = ARRAY(struct fixing, n);
 	for (int j = 0; j < n; j++) {
 		fixing[j] = (struct fixing){ .symbol = b->model->frame.coord[j], .coord = j,
@@ -156,6 +169,15 @@ static void fill_in(const struct solving *w, bool *coupled, const bool *left, in
 				coupled[i * w->n + j] = true;
 }
 
+/* A multiplier comes behind all coordinates that it acts on: then its pivot is -G M^-1 G^T. */
+static bool is_ready(const struct solving *w, const bool *left, int coord)
+{
+	bool ready = left[coord];
+	for (int j = 0; j < w->coords && coord >= w->coords; j++)
+		ready = ready && !(left[j] && w->M[coord * w->n + j]->terms);
+	return ready;
+}
+
 /* Coordinates of a block in this order; returns how many */
 static int order_of_block(const struct solving *w, int block, int *order)
 {
@@ -164,13 +186,14 @@ static int order_of_block(const struct solving *w, int block, int *order)
 	for (int i = 0; i < n; i++) {
 		left[i] = root_of_node(w->block, n + i) == block;
 		for (int j = 0; j < n; j++)
-			if (w->M[w->b->owner[i] * n + j]->terms)
+			if (w->M[row_of(w, i) * n + j]->terms)
 				coupled[i * n + j] = coupled[j * n + i] = true;
 	}
 	for (;;) {
 		int next = -1;
 		for (int j = 0; j < n; j++)
-			if (left[j] && (next < 0 || degree(w, coupled, left, j) < degree(w, coupled, left, next)))
+			if (is_ready(w, left, j) &&
+			    (next < 0 || degree(w, coupled, left, j) < degree(w, coupled, left, next)))
 				next = j;
 		if (next < 0)
 			return count;
@@ -193,13 +216,23 @@ static void find_blocks(struct solving *w)
 				join_nodes(w->block, i, w->n + j);
 }
 
+/* Without constraints */
 static bool is_constant_block(const struct solving *w, int block)
 {
 	bool constant = true;
+	for (int i = w->coords; i < w->n; i++)
+		constant = constant && root_of_node(w->block, i) != block;
 	for (int i = 0; i < w->n; i++)
 		for (int j = 0; j < w->n && root_of_node(w->block, i) == block; j++)
 			constant = constant && is_constant(w->M[i * w->n + j]);
 	return constant;
+}
+
+/* What moves the mass matrix, or the constraint; NULL: neither stands here */
+static const struct node *node_of_row(const struct solving *w, int row)
+{
+	const struct atom *atom = atom_of_highest(residual_of(w, row));
+	return row >= w->coords ? w->s->constraint[row - w->coords].statement->value : atom ? atom->node : NULL;
 }
 
 static void solve_block(struct solving *w, int block)
@@ -209,32 +242,36 @@ static void solve_block(struct solving *w, int block)
 	const struct form **M = ARRAY(const struct form *, n * n), **f = ARRAY(const struct form *, n),
 			  **F = ARRAY(const struct form *, n);
 	struct basis *highest = ARRAY(struct basis, n);
-	const struct atom *atom = NULL;
+	const struct node *node = NULL;
 	for (int i = 0; i < n; i++) {
-		int row = w->b->owner[order[i]];
-		F[i] = w->s->residual[row].form;
+		const int row = row_of(w, order[i]);
+		F[i] = residual_of(w, row);
 		f[i] = form_difference(NEW(struct form), remaining(w, row));
 		for (int j = 0; j < n; j++)
 			M[i * n + j] = w->M[row * w->n + order[j]];
 		highest[i] = (struct basis){ .kind = BASIS_COORD, .index = order[i],
 					     .order = highest_order(w->b, order[i]) };
-		atom = atom ? atom : atom_of_highest(F[i]);
+		node = node ? node : node_of_row(w, row);
 	}
 	struct written_system *written = NEW(struct written_system);
 	*written = (struct written_system){ n, highest, F };
 	const struct linear_system e = { n, M, f, written };
-	w->b->model->equations.moving_mass = atom->node;
-	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ atom->node, e };
-	for (int i = 0; i < n; i++)
-		w->s->residual[w->b->owner[order[i]]].form = form_difference(
-			form_unit(highest[i]), kept_solution(&w->b->collector, atom->node, &e, i));
+	w->b->model->equations.moving_mass = node;
+	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e };
+	for (int i = 0; i < n; i++) {
+		struct form *solution = kept_solution(&w->b->collector, node, &e, i);
+		if (order[i] < w->coords)
+			w->s->residual[row_of(w, order[i])].form = form_difference(form_unit(highest[i]), solution);
+		else
+			w->s->multiplier[order[i] - w->coords] = solution;
+	}
 }
 
 static void solve_blocks(void *context)
 {
 	struct solving *w = context;
 	for (int i = 0; i < w->n; i++)
-		check_linear(w, w->s->residual[i].form);
+		check_linear(w, residual_of(w, i));
 	for (int j = 0; j < w->n; j++)
 		find_column(w, j);
 	find_blocks(w);
@@ -245,14 +282,16 @@ static void solve_blocks(void *context)
 
 void solve_for_highest(struct building *b, struct segment_equations *s)
 {
-	bool any = false;
+	const int constraints = b->spec->count.multipliers;
+	bool any = constraints > 0;
 	for (int i = 0; i < b->model->n; i++)
 		any = any || atom_of_highest(s->residual[i].form);
 	if (!any)
 		return;
-	struct solving w = { .b = b, .s = s, .n = b->model->n };
+	struct solving w = { .b = b, .s = s, .coords = b->model->n, .n = b->model->n + constraints };
+	s->multiplier = ARRAY(struct form *, (size_t)constraints + 1);
 	w.M = ARRAY(struct form *, w.n * w.n);
-	w.rest = point_at_rest(b);
+	w.rest = point_at_rest(b, w.n);
 	b->collector.equation = true;
 	statement_guard(solve_blocks, &w);
 	b->collector.equation = false;
@@ -378,7 +417,7 @@ const struct form *residual_as_written(const struct segment_equations *s, const 
 	for (int i = 0; i < s->masses; i++) {
 		const struct written_system *written = s->mass[i].system.written;
 		for (int k = 0; k < written->rows; k++)
-			if (owner[written->highest[k].index] == row)
+			if (written->highest[k].index < s->residuals && owner[written->highest[k].index] == row)
 				return written->residual[k];
 	}
 	return s->residual[row].form;

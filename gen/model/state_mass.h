@@ -28,4 +28,9 @@ mpq_t *inverse_masses(const struct building *b, const struct segment_equations *
 /* M^-1 force per coordinate: what it adds to the highest derivatives */
 const struct form **accelerations_by(struct building *b, const struct form *const *force);
 
+/* ---- constraints.c ---- */
+
+/* What brings a state back onto them: model->equations.correction; initial values that meet them */
+void keep_constraints(struct building *b);
+
 #endif

@@ -51,6 +51,25 @@ void read_point_force(struct parser *p, struct node *first)
 	*MORE(p->spec->energy, p->spec->energies) = force;
 }
 
+/* constraint: constraint NAME : expression = expression. Its left side minus its right side is 0. */
+void read_constraint(struct parser *p)
+{
+	struct energy constraint = { .kind = 'G', .part = p->part, .at = { p->lexer.source, p->statement } };
+	const struct token name = expect_new_name(p, "the name of the constraint, which is its multiplier's");
+	expect_op(p, ":", "':' before the equation");
+	struct node *left = read_quantity(p);
+	const struct place at = p->token.at;
+	expect_op(p, "=", "'='");
+	constraint.value = node_new(NODE_SUM, at);
+	add_child(constraint.value, left, false, left->start);
+	add_child(constraint.value, read_quantity(p), true, at);
+	expect_end(p);
+	constraint.value->start = left->start;
+	constraint.value->end = constraint.end = p->end;
+	constraint.multiplier = declare(p, name, SYMBOL_MULTIPLIER, false);
+	*MORE(p->spec->energy, p->spec->energies) = constraint;
+}
+
 /* ---- which coordinates stand in them ---- */
 
 static void mark(const struct node *node, bool *named, bool *seen)
@@ -67,13 +86,14 @@ static void mark(const struct node *node, bool *named, bool *seen)
 		mark(node->child[i], named, seen);
 }
 
-static bool *coordinates_in(const struct spec *spec, bool kinetic)
+/* In those of this kind; 0: in any */
+static bool *coordinates_in(const struct spec *spec, char kind)
 {
 	bool *named = ARRAY(bool, (size_t)spec->count.components + 1);
 	bool *seen = ARRAY(bool, (size_t)spec->count.symbols + 1);
 	for (int i = 0; i < spec->energies; i++) {
 		const struct energy *energy = &spec->energy[i];
-		if (!kinetic || energy->kind == 'T')
+		if (!kind || energy->kind == kind)
 			mark(energy->point ? energy->point : energy->value, named, seen);
 	}
 	return named;
@@ -81,7 +101,12 @@ static bool *coordinates_in(const struct spec *spec, bool kinetic)
 
 bool has_kinetic_energy(const struct spec *spec, int component)
 {
-	return spec->energies > 0 && coordinates_in(spec, true)[component];
+	return spec->energies > 0 && coordinates_in(spec, 'T')[component];
+}
+
+bool is_constrained(const struct spec *spec, int component)
+{
+	return spec->count.multipliers > 0 && coordinates_in(spec, 'G')[component];
 }
 
 static void add_element(struct spec *spec, struct symbol *coord, int component)
@@ -98,7 +123,7 @@ static void add_element(struct spec *spec, struct symbol *coord, int component)
 
 void add_energy_elements(struct spec *spec)
 {
-	const bool *named = spec->energies ? coordinates_in(spec, false) : NULL;
+	const bool *named = spec->energies ? coordinates_in(spec, 0) : NULL;
 	for (struct symbol *s = spec->first; s && named; s = s->next)
 		for (int i = 0; s->kind == SYMBOL_COORD && !s->broken && i < (s->length ? s->length : 1); i++)
 			if (named[s->index + i])
@@ -156,17 +181,36 @@ static struct node *total_energy(const struct spec *spec, bool kinetic, struct p
 	return sum;
 }
 
+static bool is_zero_number(const struct node *node)
+{
+	return node->kind == NODE_NUMBER && mpq_sgn(node->number) == 0;
+}
+
+/* Its force does -NAME dg/dq q' = NAME dg/dt, that of velocities -NAME dg/dq' q' */
+static void add_power_of_constraint(struct node *sum, const struct energy *energy, struct place at)
+{
+	const struct slope by_velocities = { at, SLOPE_VELOCITIES, NULL }, by_time = { at, SLOPE_LOADS, NULL };
+	struct node *moved = slope_by(energy->value, by_velocities), *name = node_new(NODE_NAME, at);
+	const bool velocities = !is_zero_number(moved);
+	name->symbol = energy->multiplier;
+	moved = velocities ? moved : slope_by(energy->value, by_time);
+	if (!is_zero_number(moved))
+		add_child(sum, product_of(name, moved, 1, false), velocities, at);
+}
+
 /* What a force at a point, a dissipation, or an energy that loads and inputs change, brings in */
 static void add_power(struct node *sum, const struct energy *energy, struct place at)
 {
 	for (int i = 0; energy->kind == 'Q' && i < energy->value->children; i++)
 		add_child(sum, product_of(energy->value->child[i], slope_of(energy->point->child[i], at), 1, false),
 			  false, at);
-	if (energy->kind == 'Q')
+	if (energy->kind == 'G')
+		add_power_of_constraint(sum, energy, at);
+	if (energy->kind == 'Q' || energy->kind == 'G')
 		return;
 	const struct slope by = { at, energy->kind == 'D' ? SLOPE_VELOCITIES : SLOPE_LOADS, NULL };
 	struct node *power = slope_by(energy->value, by);
-	const bool none = power->kind == NODE_NUMBER && mpq_sgn(power->number) == 0;
+	const bool none = is_zero_number(power);
 	if (energy->kind == 'T' && !none)
 		error(at, "output NAME = ... writes it",
 		      "the kinetic energy depends on time: the power of what moves it is not known");

@@ -21,7 +21,8 @@ static const struct statement {
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
-	{ "energy", read_energy }, { "dissipation", read_dissipation }, { "when", read_when }, { "stop", read_stop },
+	{ "energy", read_energy }, { "dissipation", read_dissipation },
+	{ "constraint", read_constraint }, { "when", read_when }, { "stop", read_stop },
 	{ "range", read_range }, { "draw", read_draw }
 };
 
@@ -176,7 +177,8 @@ static void declare_what_failed(struct parser *p, size_t from)
 		p->spec->assembly.reader->failed(p, after);
 	bool all = statement && (statement->read == read_coord || statement->read == read_input);
 	if (!statement || (!all && statement->read != read_param && statement->read != read_let &&
-			   statement->read != read_output && statement->read != read_matrix_statement))
+			   statement->read != read_output && statement->read != read_matrix_statement &&
+			   statement->read != read_constraint))
 		return;
 	bool listed = true;                     /* here a definition starts, even one without its = */
 	int depth = 0;

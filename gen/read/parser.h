@@ -125,6 +125,7 @@ void read_draw(struct parser *p);
 
 void read_energy(struct parser *p);
 void read_dissipation(struct parser *p);
+void read_constraint(struct parser *p);
 void read_point_force(struct parser *p, struct node *first);
 
 /* ---- when.c ---- */

@@ -104,6 +104,7 @@ struct node {
 };
 struct span { mpq_srcptr after, before; };   /* of time; NULL: no bound */
 enum symbol_kind { SYMBOL_PARAM, SYMBOL_COORD, SYMBOL_LET, SYMBOL_OUTPUT, SYMBOL_INPUT, SYMBOL_MATRIX,
+		   SYMBOL_MULTIPLIER, /* of a constraint */
 		   SYMBOL_PART_OUTPUT, SYMBOL_PART };
 struct symbol_tuning {
 	/* it is tunable, or made of something that is; of that: check_tuned has looked through its value */
@@ -162,11 +163,13 @@ struct element {                    /* of a network */
 	struct place at, end;
 	struct node *value, *from, *to; /* coordinates, or components; `to` NULL: the ground, or none */
 };
-struct energy {                     /* or the force at a point */
-	char kind;                  /* 'T', 'V', 'D'; 'Q': components `value` of a force at the point `point` */
+struct energy {                     /* or the force at a point, or a constraint */
+	/* 'T', 'V', 'D'; 'Q': components `value` of a force at the point `point`; 'G': `value` is 0 at all times */
+	char kind;
 	const struct assembly_part *part;
 	struct place at, end;
 	struct node *value, *point;
+	struct symbol *multiplier;  /* of a constraint */
 };
 struct drawing {                    /* draw WHAT at POINT, or from POINT to POINT: for pages */
 	struct place at, end;
@@ -278,7 +281,7 @@ struct requested_operators {
 	struct fixed *fixed;
 };
 struct spec_counts {
-	int symbols, params, coords, lets, outputs, inputs, matrices, part_outputs, part_names;
+	int symbols, params, coords, lets, outputs, inputs, matrices, multipliers, part_outputs, part_names;
 	int components;             /* of all coordinates together */
 	int delays;                 /* of the inputs, those that are others some time ago */
 };
@@ -345,6 +348,7 @@ int nodes_of_drawing(const struct drawing *d, struct node **node); /* what it re
 void add_energy_elements(struct spec *spec);                /* one for each coordinate that they name, at the end */
 void fill_totals(struct spec *spec);                        /* what outputs read of energy, power and momentum */
 bool has_kinetic_energy(const struct spec *spec, int component); /* then the coordinate is of second order */
+bool is_constrained(const struct spec *spec, int component);
 /* ---- params.c: other values of params than the spec's ---- */
 
 struct definition {

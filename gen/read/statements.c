@@ -47,7 +47,8 @@ struct symbol *declare(struct parser *p, struct token name, enum symbol_kind kin
 		      known->kind == SYMBOL_OUTPUT || known->kind == SYMBOL_INPUT ? "an" : "a", symbol_kind(known));
 	int *counts[] = {
 		&spec->count.params, &spec->count.coords,   &spec->count.lets,	       &spec->count.outputs,
-		&spec->count.inputs, &spec->count.matrices, &spec->count.part_outputs, &spec->count.part_names
+		&spec->count.inputs, &spec->count.matrices, &spec->count.multipliers, &spec->count.part_outputs,
+		&spec->count.part_names
 	};
 	const char *whole = p->part ? format("%s.%s", p->part->name, name.name) : name.name;
 	if (kind != SYMBOL_PART && !broken)

@@ -143,8 +143,8 @@ static bool begins(const char *line, const char *word)
 
 const char *symbol_kind(const struct symbol *symbol)
 {
-	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix", "output",
-					    "part" };
+	static const char *const text[] = { "param", "coordinate", "let", "output", "input", "matrix",
+					    "constraint", "output", "part" };
 	return text[symbol->kind];
 }
 

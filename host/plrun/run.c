@@ -87,10 +87,12 @@ static char *status_text(int status, double t, bool single)
 		text = format("%s what is to stick and what is to slip at an event had no answer", text);
 	if (status & PL_PENETRATED)
 		text = format("%s the step has ended beyond a stop", text);
+	if (status & PL_SINGULAR_MASS)
+		text = format("%s the mass matrix is singular, or gradients of constraints depend on each other", text);
 	if (status & PL_LEFT_RANGE)
 		text = format("%s a state has left the range that the spec gives it", text);
 	if (status & ~(PL_UNDECIDED | PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE |
-		       PL_LEFT_RANGE | PL_PENETRATED))
+		       PL_LEFT_RANGE | PL_PENETRATED | PL_SINGULAR_MASS))
 		text = format("%s status %d", text, status);
 	return text;
 }

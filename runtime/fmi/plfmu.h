@@ -371,6 +371,9 @@ static enum fmu_result fmu_look(fmu_instance *i)
     if (fresh & PL_PENETRATED) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step has ended beyond a stop", fmu_time(d));
     }
+    if (fresh & PL_SINGULAR_MASS) {
+        return fmu_say(i, FMU_ERROR, "up to %.9g s the mass matrix was singular", fmu_time(d));
+    }
     if (fresh & PL_TOO_MANY_STEPS) {
         return fmu_say(i, FMU_ERROR, "up to %.9g s a step needed more substeps than its bound", fmu_time(d));
     }

@@ -317,10 +317,12 @@ static void check_status(const void *state)
         fprintf(stderr, " what is to stick and what is to slip at an event had no answer");
     if (status & PL_PENETRATED)
         fprintf(stderr, " the step has ended beyond a stop");
+    if (status & PL_SINGULAR_MASS)
+        fprintf(stderr, " the mass matrix is singular, or gradients of constraints depend on each other");
     if (status & PL_LEFT_RANGE)
         fprintf(stderr, " a state has left the range that the spec gives it");
     if (status & ~(PL_UNDECIDED | PL_TOO_MANY_EVENTS | PL_NOT_FINITE | PL_TOO_MANY_STEPS | PL_INACCURATE |
-                   PL_LEFT_RANGE | PL_PENETRATED))
+                   PL_LEFT_RANGE | PL_PENETRATED | PL_SINGULAR_MASS))
         fprintf(stderr, " status %d", status);
     fprintf(stderr, "\n");
     exit(1);

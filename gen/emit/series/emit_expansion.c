@@ -11,7 +11,8 @@
 /* Of fixed order, the coefficients locals of the step */
 static bool is_straight(const struct emitter *e)
 {
-	return !truncation_of(e)->adaptive && !spans_steps(e) && !watches(e) && expands_in_step(e);
+	return !truncation_of(e)->adaptive && !spans_steps(e) && !watches(e) && expands_in_step(e) &&
+	       !e->model->equations.correction;
 }
 
 /* ---- its sum ---- */
@@ -224,6 +225,7 @@ static void emit_model_functions(const struct emitter *e)
 	if (!is_straight(e))
 		emit_pass_time(e);
 	emit_sums(e);
+	emit_constraints(e);
 }
 
 static void emit_algorithm(const struct emitter *e)
@@ -242,7 +244,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
 		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
-		   { "AT", e->step->series.emitted });
+		   { "AT", e->step->series.emitted }, { "CONSTRAINTS", e->model->equations.correction != NULL });
 	if (has_switching(e))
 		emit_switching_macros(e);
 	if (looks_at_tolerance(e))

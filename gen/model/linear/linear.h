@@ -62,6 +62,8 @@ struct equations {                  /* as they are written */
 	double *free;
 	int starts, equilibria;     /* where they were searched for: from so many points, so many were found */
 	struct equilibrium *equilibrium;
+	/* per state: what has to be taken from it for the constraints to hold, to first order; NULL: there are none */
+	const struct form **correction;
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;

@@ -179,8 +179,9 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 		w->slopes[k] = augmented_matrix(&w->layout, system, k);
 	for (int e = 0; e < model->remainder.force_columns; e++)
 		count_uses(w, model->schedule.operator[0].left[e]);
-	w->highest = ARRAY(int, system->n);
-	for (int j = 0; j < system->n; j++)
+	const int unknowns = system->n + w->step->model->spec->count.multipliers;
+	w->highest = ARRAY(int, unknowns);
+	for (int j = 0; j < unknowns; j++)
 		w->highest[j] = NONE;
 	start_states(w);
 	hold_contacts(w);

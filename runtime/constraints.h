@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* constraints.h: part of taylor.h and radau.h: a state is put back onto the model's constraints, positions and
+ * velocities, at the end of each step, expansion and internal step, always: with a threshold the state would lean to
+ * one side of them, and energy would drift.  The model has
+ *
+ *     PL(misses)(s, tau, y, miss)   tau after now: what has to be taken from each state so that the constraints hold to
+ *                                first order: M^-1 G^T (G M^-1 G^T)^-1 g of positions, the same of velocities. The
+ *                                mass matrix M measures how near that is, so motion along the constraints stays. */
+#define PL_PASSES 2 /* the second takes what the velocities' own miss is by that of the positions */
+
+#if PL_CONSTRAINTS
+/* 0; PL_SINGULAR_MASS where none of its corrections is finite, and the state stays as it was */
+static PL_APART int PL(project)(const PL_TYPE *s, real tau, real y[PL_STATES], real low[PL_STATES])
+{
+    real miss[PL_STATES];
+    int i, pass;
+    for (pass = 0; pass < PL_PASSES; pass++) {
+        PL(misses)(s, tau, y, miss);
+        if (pl_not_finite(miss, PL_STATES)) {
+            return PL_SINGULAR_MASS;
+        }
+        for (i = 0; i < PL_STATES; i++) {
+            y[i] = pl_accumulate(y[i], -miss[i], 0, &low[i]);
+        }
+    }
+    return 0;
+}
+
+/* The same where no low parts are kept */
+static inline int PL(project_rounded)(const PL_TYPE *s, real tau, real y[PL_STATES])
+{
+    real low[PL_STATES] = {0};
+    return PL(project)(s, tau, y, low);
+}
+#endif
