@@ -24,6 +24,7 @@ chain 4 0.02
 crane 20 0.05
 double_pendulum 10 0.02
 duffing 40 0.1 taylor
+four_bar 2 0.01
 frame 10 0.02
 gear1 60 0.2
 gear2 60 0.2
@@ -44,6 +45,8 @@ scs 5 0.0125
 scs_weak 1 0.0025
 sdcs 10 0.025
 sdcsf 10 0.025
+slider_crank 2 0.01
+spherical_joint 2 0.01
 stick_slip 10 0.025
 stop 2 0.005
 street 20 0.05
@@ -51,7 +54,8 @@ swing_arm 2.5 0.01
 tuned_floor 10 0.02
 two_masses 6 0.01
 vanderpol 30 0.1 taylor
-vanderpol_stiff 300 0.5 auto'
+vanderpol_stiff 300 0.5 auto
+wheel 10 0.05'
 
 # record NAME END STEP: what its inputs get, as CSV with times
 record() {
@@ -87,7 +91,7 @@ echo "$lengths" | while read -r name end step scheme; do
 		street) shown='s/^output n1.roof.*/output n1.roof, n4.roof, n10.roof/' ;;
 		vanderpol_stiff) shown='s/^step/output x\n&/' ;;
 		quad2dof) shown='/^output energy/d' ;;
-		cart_pole | chain | double_pendulum) shown='s/, energy.*//' ;;
+		cart_pole | chain | double_pendulum | four_bar) shown='s/, energy.*//' ;;
 		*) shown= ;;
 	esac
 	spec=models/$name.spec

@@ -51,11 +51,11 @@ count() {
 
 # points METHOD: lines ERROR COUNT to the instructions a second at the three errors
 points() {
-	awk -v method="$1" '{ e = $1 > 0 ? log($1) : -99; c = log($2); error[NR] = e; cost[NR] = c }
+	awk -v method="$1" '{ e[NR] = $1 > 0 ? log($1) : -99; c[NR] = log($2) }
 		END { printf "%s", method
-		      for (k = 6; k <= 12; k += 3) { want = -k*log(10); best = ""
-		          for (i = 1; i < NR; i++) if (error[i] >= want && error[i + 1] <= want && error[i] > error[i + 1])
-		              best = cost[i] + (cost[i + 1] - cost[i])*(error[i] - want)/(error[i] - error[i + 1])
+		      for (k = 6; k <= 12; k += 3) { want = -k*log(10); best = e[1] <= want ? c[1] : ""
+		          for (i = 1; i < NR; i++) if (e[i] > want && e[i + 1] <= want)
+		              best = c[i] + (c[i + 1] - c[i])*(e[i] - want)/(e[i] - e[i + 1])
 		          if (best == "") printf " -"; else printf " %d", exp(best)/1000 }
 		      print "" }'
 }
@@ -65,11 +65,13 @@ for model; do
 	case $model in
 		[0-9]*)
 			first=$(seq -s '; ' 1 0.1 "$(awk -v n="$model" 'BEGIN { print 1 + (n - 1)/10 }')")
-			sed -e "s/q\[10\]/q[$model]/; s/^init.*/init q = [$first]/; /^output/d" models/chain.spec >"$work/m.spec"
+			sed -e "s/q\[10\]/q[$model]/; s/^init.*/init q = [$first]/; /^output/d" models/chain.spec \
+				>"$work/m.spec"
 			;;
 		*) sed '/^output/d' "models/$model.spec" >"$work/m.spec" ;;
 	esac
-	"$build/plgen" --prefix subject --rhs --step $every --tolerance 1e-15 "$work/m.spec" >"$work/subject_pl.c" 2>/dev/null
+	"$build/plgen" --prefix subject --rhs --step $every --tolerance 1e-15 "$work/m.spec" >"$work/subject_pl.c" \
+		2>/dev/null
 	states=$(sed -n 's/^enum {.*SUBJECT_STATES = \([0-9]*\).*/\1/p' "$work/subject_pl.c")
 	awk '/^void subject_rhs\(/ && !/;/ { on = 1 } on { print } on && /^}/ { exit }' "$work/subject_pl.c" |
 		sed 's/^void subject_rhs(/INLINE void rhs_double(/' >"$work/rhs_double.h"
@@ -93,7 +95,8 @@ for model; do
 	# error: of the last state
 	error() {
 		echo "$state" | awk 'NR == FNR { n = split($0, a, " "); next }
-			{ split($0, b, " "); for (i = 1; i <= n; i++) { d = a[i] - b[i]; d = d < 0 ? -d : d; if (d > e) e = d }
+			{ split($0, b, " ")
+			  for (i = 1; i <= n; i++) { d = a[i] - b[i]; d = d < 0 ? -d : d; if (d > e) e = d }
 			  print e + 0 }' "$work/truth" -
 	}
 	echo "$model:"

@@ -469,8 +469,7 @@ void find_free_directions(struct linearising *l)
 	enum { POINTS = 3 };
 	struct equations *e = &l->b->model->equations;
 	const int n = l->n, wide = n + 1;
-	double *A = ARRAY(double, n * wide);
-	e->free = ARRAY(double, n * n);
+	double *A = ARRAY(double, n * wide), *free = ARRAY(double, n * n);
 	derive_residuals(l);
 	for (int point = 0; point < POINTS; point++) {
 		start_anywhere(l, point);
@@ -480,7 +479,8 @@ void find_free_directions(struct linearising *l)
 				for (int k = 0; k < n; k++)
 					A[i * wide + j] += K[k * wide + i] * K[k * wide + j];
 	}
-	e->directions = null_space(n, A, e->free);
+	e->directions = null_space(n, A, free);
+	e->free = free;
 }
 
 /* ---- kinks ---- */

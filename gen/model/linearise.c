@@ -461,6 +461,10 @@ static void check_contacts(const struct building *b)
 	if (facts.contacts)
 		error(b->spec->name_at, "plrun runs any model, also with a record that sweeps",
 		      "friction, impacts and jumps have no linear equations");
+	for (int i = 0; i < b->spec->energies; i++)
+		if (b->spec->energy[i].kind == 'G')
+			error(b->spec->energy[i].at, "coordinates that fulfil it by themselves have some",
+			      "linear equations at a point are not built for constraints");
 }
 
 /* By the residuals as they are written: solved for highest derivatives, forces on one coordinate would stand in all

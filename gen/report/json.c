@@ -281,7 +281,7 @@ void explain_json(FILE *to, const struct step *step)
 		json_assembly(to, model->spec);
 	if (model->spec->drawings)
 		json_drawings(to, model->spec);
-	if (model->spec->energies)
+	if (model->written->equations.free)
 		json_symmetries(to, model->written);
 	if (tunables_of(model))
 		json_tuning(to, tunables_of(model));

@@ -59,7 +59,7 @@ struct equations {                  /* as they are written */
 	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
 	const char *linearised, *point;
 	int directions;             /* of coordinates, along which no equation changes: rows, largest entry 1 */
-	double *free;
+	double *free;               /* NULL: not known */
 	int starts, equilibria;     /* where they were searched for: from so many points, so many were found */
 	struct equilibrium *equilibrium;
 	/* per state: what has to be taken from it for the constraints to hold, to first order; NULL: there are none */
