@@ -30,6 +30,8 @@ struct model_contacts {             /* of regions and of other schemes: gen/mode
 	struct impact *impact;
 	int drags;                  /* friction that a Taylor series goes beside */
 	struct drag *drag;
+	int masses;                 /* mass matrices of the state: the equations that each couples */
+	const struct linear_system **mass;
 };
 struct model_params {               /* tunable ones: gen/model/tunable */
 	const struct tuning *tuning; /* and how linear equations follow from them; NULL: there are none */

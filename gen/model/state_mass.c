@@ -122,22 +122,26 @@ static void find_column(struct solving *w, int coord)
 		w->M[i * w->n + coord] = slope[i];
 }
 
-/* The residual where highest derivatives are 0; terms without them stay as they are written */
+/* A form where highest derivatives are 0; terms without them stay as they are. Friction is added by what holds. */
+static struct form *at_rest(const struct building *b, struct point *rest, const struct form *form)
+{
+	struct form *sum = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		const struct form *alone = form_unit(term->basis);
+		if (is_highest(&b->model->frame, &term->basis) || is_friction(term->basis.atom))
+			continue;
+		if (atom_of_highest(alone))
+			form_add_to(sum, form_at(rest, alone), term->factor);
+		else
+			form_add_basis(sum, term->basis, term->factor);
+	}
+	return sum;
+}
+
 static struct form *remaining(const struct solving *w, int row)
 {
-	const struct form *residual = residual_of(w, row);
-	struct form *rest = NEW(struct form);
-	for (int i = 0; i < residual->terms; i++) {
-		const struct form_term *term = &residual->term[i];
-		const struct form *alone = form_unit(term->basis);
-		if (is_highest(&w->b->model->frame, &term->basis) || is_friction(term->basis.atom))
-			continue;               /* friction is added by what holds: contacts.c */
-		if (atom_of_highest(alone))
-			form_add_to(rest, form_at(w->rest, alone), term->factor);
-		else
-			form_add_basis(rest, term->basis, term->factor);
-	}
-	return rest;
+	return at_rest(w->b, w->rest, residual_of(w, row));
 }
 
 static struct point *point_at_rest(struct building *b, int n)
@@ -339,6 +343,11 @@ void check_mass_at_start(struct building *b)
 
 /* ---- forces on mechanisms ---- */
 
+struct form *form_at_rest(struct building *b, const struct form *form)
+{
+	return at_rest(b, point_at_rest(b, b->model->n), form);
+}
+
 static const struct linear_system *system_of_coord(const struct segment_equations *s, int coord, int *row)
 {
 	for (int i = 0; i < s->masses; i++) {
@@ -361,7 +370,7 @@ const char *unsymmetric_mass(const struct building *b, const struct form *const 
 	int row;
 	for (int k = 0; k < b->model->n; k++) {
 		const struct linear_system *e = system_of_coord(b->full, k, &row);
-		for (int j = 0; e && force[b->owner[k]]->terms && j < e->n * e->n; j++)
+		for (int j = 0; e && force[k]->terms && j < e->n * e->n; j++)
 			if (!same_form(e->M[j], e->M[j % e->n * e->n + j / e->n]))
 				return b->model->names.coord[k];
 	}
@@ -388,9 +397,11 @@ mpq_t *inverse_masses(const struct building *b, const struct segment_equations *
 static struct form *acceleration_in_block(struct building *b, const struct linear_system *e, int row,
 					  const struct form *const *force)
 {
-	const struct form **f = ARRAY(const struct form *, e->n);
-	for (int i = 0; i < e->n; i++)
-		f[i] = force[b->owner[e->written->highest[i].index]];
+	const struct form **f = ARRAY(const struct form *, e->n), *none = form_number(0);
+	for (int i = 0; i < e->n; i++) {
+		const int coord = e->written->highest[i].index;
+		f[i] = coord < b->model->n ? force[b->owner[coord]] : none;
+	}
 	return kept_solution(&b->collector, b->model->equations.moving_mass,
 			     &(struct linear_system){ e->n, e->M, f, NULL }, row);
 }

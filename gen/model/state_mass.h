@@ -21,11 +21,12 @@ void check_mass_at_start(struct building *b);               /* that M is regular
 /* Whether the equation of its highest derivative has a factor of the state */
 bool has_moving_mass(const struct segment_equations *s, int coord);
 /* The first coordinate on whose equation a force acts and whose mass matrix is not symmetric; NULL: there is none.
- * force: per residual of the equations for all time */
+ * force: per coordinate */
 const char *unsymmetric_mass(const struct building *b, const struct form *const *force);
+struct form *form_at_rest(struct building *b, const struct form *form); /* highest derivatives are 0 there */
 /* Of highest derivatives that have constant factors, as the equations have them; n x n */
 mpq_t *inverse_masses(const struct building *b, const struct segment_equations *s);
-/* M^-1 force per coordinate: what it adds to the highest derivatives */
+/* M^-1 force (per residual) per coordinate: what it adds to the highest derivatives */
 const struct form **accelerations_by(struct building *b, const struct form *const *force);
 
 /* ---- constraints.c ---- */

@@ -121,6 +121,7 @@ void find_contacts(struct building *b)
 			impact->in->press = rate_of_form(b, impact->in->speed);
 	}
 	find_drags(b);
+	find_masses(b);
 }
 
 void place_contact_loads(struct building *b)

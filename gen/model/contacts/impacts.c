@@ -415,7 +415,7 @@ static void build_impact(void *context)
 		if (when->restitution)
 			find_jumps(b, when, impact_law);
 		else
-			bounces = find_bounce(b, impact_law);
+			bounces = !contact_moves(b, impact_law->guard) && find_bounce(b, impact_law);
 		if (s > 0 && bounces != impact->bounces)
 			report_bounce_changes(b, when, s, bounces);
 		impact->bounces = bounces;

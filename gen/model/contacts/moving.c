@@ -123,12 +123,17 @@ static int sign_at_start(struct building *b, const struct moving_contact *c)
 /* ---- the whole ---- */
 
 static struct moving_contact *moving_contact(struct building *b, const struct form **gradient,
-					     const struct form *const *force)
+					     const struct form **force, const struct form *rate)
 {
+	const int n = b->model->n;
 	struct moving_contact *c = NEW(struct moving_contact);
-	*c = (struct moving_contact){ gradient, accelerations_by(b, force), ARRAY(double, b->model->n) };
+	const struct form **row = ARRAY(const struct form *, n);
+	for (int j = 0; j < n; j++)
+		row[b->owner[j]] = force[j];
+	*c = (struct moving_contact){ gradient, force, accelerations_by(b, row), form_at_rest(b, rate),
+				      ARRAY(double, n) };
 	if (!silent_guard(sample_gradient, &(struct sampling){ b, gradient, c->sample }))
-		for (int j = 0; j < b->model->n; j++)
+		for (int j = 0; j < n; j++)
 			c->sample[j] = gradient[j]->terms ? 1 : 0;
 	return c;
 }
@@ -174,10 +179,8 @@ struct form *speed_that_moves(struct building *b, const struct when *when, const
 void find_moving_impact(struct building *b, struct impact *impact)
 {
 	struct impact_law *law = impact->in;
-	const struct form **gradient = gradient_of(b, law->guard, 0), **force = ARRAY(const struct form *, b->model->n);
-	for (int j = 0; j < b->model->n; j++)
-		force[b->owner[j]] = gradient[j];
-	const char *coord = unsymmetric_mass(b, force);
+	const struct form **gradient = gradient_of(b, law->guard, 0);
+	const char *coord = unsymmetric_mass(b, gradient);
 	if (coord)
 		error(impact->when->at, "energy T and V give such equations, or each equation over the factor of its "
 		      "momentum",
@@ -187,10 +190,18 @@ void find_moving_impact(struct building *b, struct impact *impact)
 		if (gradient[j]->terms > 0 && b->model->system.velocity[j] < 0)
 			error(impact->when->at, "a mass, or an equation with its second derivative",
 			      "an impact needs a mass: %s is of first order", b->model->names.coord[j]);
-	law->moving = moving_contact(b, gradient, force);
 	law->press = rate_with_atoms(b, law->speed);
+	law->moving = moving_contact(b, gradient, gradient, law->press);
 	if (sign_at_start(b, law->moving) == -1)
 		error(impact->when->at, NULL, "the masses at this stop do not make a force part them");
+}
+
+void find_masses(struct building *b)
+{
+	struct model_contacts *c = &b->model->contacts;
+	c->mass = ARRAY(const struct linear_system *, b->full->masses);
+	for (c->masses = 0; c->masses < b->full->masses; c->masses++)
+		c->mass[c->masses] = &b->full->mass[c->masses].system;
 }
 
 void find_moving_drag(struct building *b, struct drag *drag)
@@ -201,13 +212,13 @@ void find_moving_drag(struct building *b, struct drag *drag)
 	for (int j = 0; j < b->model->n; j++) {
 		const struct form_term *term =
 			form_find(residual_as_written(b->full, b->owner, b->owner[j]), &basis);
-		force[b->owner[j]] = term ? form_constant(term->factor) : NEW(struct form);
+		force[j] = term ? form_constant(term->factor) : NEW(struct form);
 		moves = moves || (term && has_moving_mass(b->full, j));
 	}
 	if (!moves)
 		return;
-	drag->moving = moving_contact(b, gradient_of(b, drag->velocity, 1), force);
 	drag->rate = rate_with_atoms(b, drag->velocity);
+	drag->moving = moving_contact(b, gradient_of(b, drag->velocity, 1), force, drag->rate);
 	int sign = sign_at_start(b, drag->moving);
 	if (sign == 0)
 		error(drag->atom->node->at, "its velocity has to answer to its force",

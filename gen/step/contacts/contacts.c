@@ -9,6 +9,8 @@
 #include "step/series/expansion.h"
 #include "inner.h"
 
+#include <math.h>
+
 /* ---- what divides ---- */
 
 /* By the form, which has a sequence then */
@@ -96,6 +98,198 @@ static void make_slip(struct constraints *all, int index)
 		.breakpoint = hold->breakpoint, .a = hold->above ? force : back, .b = hold->above ? back : force });
 }
 
+/* ---- forces ---- */
+
+/* ---- where answers are numbers: each combination of those that hold has its own sum ---- */
+
+struct together {
+	struct constraints *all;
+	int members, *member;       /* of a group, the one whose force is made first */
+	bool *holds;                /* per member */
+};
+
+/* inverse: of the answers among those that hold; false: there is none */
+static bool invert(const struct together *t, int count, const int *which, mpq_t *inverse)
+{
+	mpq_t *a = rationals((size_t)(count * count));
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j < count; j++)
+			mpq_set(a[i * count + j], t->all->constraint[which[i]].delassus[which[j]].number);
+	int column;
+	return rational_inverse(count, a, inverse, &column);
+}
+
+static double dot_samples(const struct constraints *all, int a, int b)
+{
+	double sum = 0;
+	for (int i = 0; i < all->w->system->states; i++)
+		sum += all->constraint[a].sample[i] * all->constraint[b].sample[i];
+	return sum;
+}
+
+/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
+static int side_beside(const struct constraints *all, int friction, int contact)
+{
+	const struct entry *answer = &all->constraint[friction].delassus[contact];
+	bool along = is_number_entry(answer) ? mpq_sgn(answer->number) < 0 : dot_samples(all, friction, contact) > 0;
+	return along == all->c->hold[friction].above ? 1 : -1;
+}
+
+static void note_conflict(const struct constraints *all, int count, const int *which)
+{
+	struct contacts *c = all->c;
+	struct conflict new = { .hold = NONE };
+	for (int i = 0; i < count; i++)
+		new.set |= 1UL << which[i];
+	for (int i = 0; i < c->conflicts; i++)
+		if ((c->conflict[i].set & new.set) == c->conflict[i].set)
+			return;
+	int frictions = 0, at = 0;
+	for (int i = 0; i < count; i++) {
+		bool drags = all->constraint[which[i]].drag != NONE;
+		frictions += drags;
+		at = drags ? i : at;
+	}
+	if (frictions == count)
+		error(all->constraint[which[0]].node->at, "without one of them its part is known",
+		      "friction holds what other friction holds already: while all of it sticks its force is not "
+		      "determined");
+	if (count == 2 && frictions == 1) {
+		new.hold = which[at];
+		new.side = side_beside(all, which[at], which[!at]);
+	}
+	*MORE(c->conflict, c->conflicts) = new;
+}
+
+/* Whether one is always a sum of others: by their Gram matrix at some state, by Cholesky */
+static bool are_dependent(const struct constraints *all, int count, const int *which)
+{
+	double *a = ARRAY(double, count * count);
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j <= i; j++) {
+			double sum = dot_samples(all, which[i], which[j]);
+			for (int k = 0; k < j; k++)
+				sum -= a[i * count + k] * a[j * count + k];
+			if (i == j && !(sum > 1e-9 * dot_samples(all, which[i], which[i])))
+				return true;
+			a[i * count + j] = i == j ? sqrt(sum) : sum / a[j * count + j];
+		}
+	return false;
+}
+
+/* Sets of few come first, so that those with a conflict in them are not noted again. */
+static void note_conflicts(const struct constraints *all, int members, const int *member)
+{
+	int *which = ARRAY(int, members);
+	for (int size = 2; size <= members; size++)
+		for (int set = 0; set < 1 << members; set++) {
+			int count = 0;
+			for (int i = 0; i < members; i++)
+				if (set >> i & 1)
+					which[count++] = member[i];
+			if (count == size && are_dependent(all, count, which))
+				note_conflict(all, count, which);
+		}
+}
+
+/* Of member 0, where these hold and the others of the group slip */
+static int force_together(const struct together *t)
+{
+	struct sequencing *w = t->all->w;
+	int count = 0, *which = ARRAY(int, t->members);
+	for (int i = 0; i < t->members; i++)
+		if (t->holds[i])
+			which[count++] = t->member[i];
+	mpq_t *inverse = rationals((size_t)(count * count));
+	struct sum sum = { 0 };
+	if (!invert(t, count, which, inverse)) {
+		note_conflict(t->all, count, which);
+		return t->all->none;
+	}
+	RATIONAL part = ZERO;
+	for (int i = 0; i < count; i++) {
+		const struct constraint *h = &t->all->constraint[which[i]];
+		mpq_neg(part, inverse[i]);
+		sum_add(&sum, TERM_SEQUENCE, h->bare, 0, part);
+		for (int j = 0; j < t->members; j++) {
+			const struct constraint *other = &t->all->constraint[t->member[j]];
+			if (!t->holds[j] && other->slips != NONE)
+				sum_add_entry(&sum, other->slips, &h->delassus[t->member[j]], part);
+		}
+	}
+	return sum_sequence(w, &sum);
+}
+
+static int force_in_cases(struct together *t, int next)
+{
+	if (next == t->members)
+		return force_together(t);
+	t->holds[next] = true;
+	int held = force_in_cases(t, next + 1);
+	t->holds[next] = false;
+	int free = force_in_cases(t, next + 1);
+	return hold_choice(t->all->w, &t->all->c->hold[t->member[next]], held, free);
+}
+
+static bool moves(const struct constraints *all, int members, const int *member)
+{
+	bool any = false;
+	for (int i = 0; i < members; i++)
+		any = any || all->constraint[member[i]].moving;
+	for (int i = 0; i < members * members; i++)
+		any = any || !is_number_entry(&all->constraint[member[i / members]].delassus[member[i % members]]);
+	return any;
+}
+
+static void make_force(struct constraints *all, int index, int members, const int *member)
+{
+	struct sequencing *w = all->w;
+	struct constraint *h = &all->constraint[index];
+	struct together t = { all, 1, ARRAY(int, members), ARRAY(bool, members) };
+	t.member[0] = index;
+	t.holds[0] = true;
+	for (int i = 0; i < members; i++)
+		if (member[i] != index)
+			t.member[t.members++] = member[i];
+	int held = force_in_cases(&t, 1);
+	h->force = hold_choice(w, &all->c->hold[index], held, h->slips == NONE ? all->none : h->slips);
+}
+
+/* The members of its group; they are too many for as many combinations as the target looks at */
+static int *members_of(const struct constraints *all, int index, int *members)
+{
+	enum { MOST = 4 };
+	const struct constraint *h = &all->constraint[index];
+	int *member = ARRAY(int, all->constraints);
+	*members = 0;
+	for (int i = 0; i < all->constraints; i++)
+		if (all->constraint[i].group == h->group)
+			member[(*members)++] = i;
+	if (*members > MOST)
+		error(h->node ? h->node->at : all->w->step->model->contacts.impact[h->impact].when->at,
+		      "a piecewise-linear model takes more",
+		      "beside what is not piecewise linear at most %d frictions and contacts act on each other", MOST);
+	return member;
+}
+
+static void make_forces(struct constraints *all)
+{
+	for (int i = 0; i < all->constraints; i++) {
+		int members, *member = members_of(all, i, &members);
+		if (!moves(all, members, member))
+			all->constraint[i].bare = bare_rate(all->w, &all->constraint[i]);
+	}
+	for (int i = 0; i < all->constraints; i++) {
+		int members, *member = members_of(all, i, &members);
+		if (!moves(all, members, member)) {
+			make_force(all, i, members, member);
+		} else if (member[0] == i) {
+			note_conflicts(all, members, member);
+			solve_group(all, members, member);
+		}
+	}
+}
+
 /* ---- what the search of events looks at ---- */
 
 static int watch(struct sequencing *w, int sequence, bool full)
@@ -113,24 +307,44 @@ static int watch(struct sequencing *w, int sequence, bool full)
 /* The force that it would take to hold this one, the others as they are: -(bare + answers of the others)/answer */
 static struct sum needed_force(const struct constraints *all, int index, long sign)
 {
-	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
-	const struct entry *answer = &h->delassus[index];
 	struct sum sum = { 0 };
 	RATIONAL factor = ZERO;
 	mpq_set_si(factor, -sign, 1);
-	if (answer->sequence == NONE)
-		mpq_div(factor, factor, answer->number);
+	mpq_div(factor, factor, h->delassus[index].number);
 	sum_add(&sum, TERM_SEQUENCE, h->bare, 0, factor);
 	for (int j = 0; j < all->constraints; j++)
 		if (j != index)
 			sum_add_entry(&sum, all->constraint[j].force, &h->delassus[j], factor);
-	if (answer->sequence == NONE)
-		return sum;
-	struct sum force = { 0 };
-	RATIONAL one = RATIO(1, 1);
-	sum_add(&force, TERM_SEQUENCE, quotient_by_entry(w, sequence_of_sum(w, &sum), answer), 0, one);
-	return force;
+	return sum;
+}
+
+/* By how much that is beyond what holds. Where the force is solved for it is known while it holds; while it slips by
+ * the same force, its rate has that sign. */
+static int pull_sequence(const struct constraints *all, int index, long sign, const struct drag *drag)
+{
+	struct sequencing *w = all->w;
+	const struct constraint *h = &all->constraint[index];
+	const int rest = drag ? rest_sequence(w, drag) : NONE;
+	RATIONAL minus = RATIO(-1, 1), factor = ZERO;
+	struct sum sum = { 0 }, rate = { 0 };
+	mpq_set_si(factor, sign, 1);
+	if (h->solved)
+		sum_add(&sum, TERM_SEQUENCE, h->force, 0, factor);
+	else
+		sum = needed_force(all, index, sign);
+	if (drag)
+		sum_add(&sum, TERM_SEQUENCE, rest, 0, minus);
+	if (!h->solved)
+		return sum_sequence(w, &sum);
+	if (!drag || drag->rest == drag->force) {
+		sum_add(&rate, TERM_SEQUENCE, h->bare, 0, factor);
+		return hold_choice(w, &all->c->hold[index], sum_sequence(w, &sum), sum_sequence(w, &rate));
+	}
+	const int held = sum_sequence(w, &sum);
+	mpq_neg(factor, factor);
+	sum_add(&sum, TERM_SEQUENCE, quotient_by_entry(w, h->bare, &h->delassus[index]), 0, factor);
+	return hold_choice(w, &all->c->hold[index], held, sum_sequence(w, &sum));
 }
 
 /* What is taken from each state for a velocity of 1: numbers, or what is watched */
@@ -164,19 +378,14 @@ static void watch_hold(struct constraints *all, int index)
 	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
 	struct series_hold *hold = &all->c->hold[index];
-	RATIONAL minus = ZERO;
-	mpq_set_si(minus, -1, 1);
 	hold->velocity = watch(w, sequence_of_form(w, h->velocity), false);
 	find_back(all, index, hold);
 	if (h->drag == NONE) {
-		struct sum pull = needed_force(all, index, -1);
-		hold->pull[!hold->above] = watch(w, sum_sequence(w, &pull), true);
+		hold->pull[!hold->above] = watch(w, pull_sequence(all, index, -1, NULL), true);
 	}
 	for (int up = 0; up < 2 && h->drag != NONE; up++) {
 		const struct drag *drag = &w->step->model->contacts.drag[h->drag];
-		struct sum pull = needed_force(all, index, up == hold->above ? 1 : -1);
-		sum_add(&pull, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
-		hold->pull[up] = watch(w, sum_sequence(w, &pull), true);
+		hold->pull[up] = watch(w, pull_sequence(all, index, up == hold->above ? 1 : -1, drag), true);
 	}
 }
 
@@ -323,11 +532,22 @@ struct sum held_slope(struct sequencing *w, int state)
 	return slope;
 }
 
+int solved_force(const struct sequencing *w, int force_column)
+{
+	const struct model *model = w->step->model;
+	for (int j = 0; j < w->system->n && w->x->contacts; j++) {
+		const int velocity = w->system->velocity[j], state = velocity >= 0 ? velocity : j;
+		if (model->equations.owner[j] == model->remainder.row[force_column] && w->x->contacts->solved[state])
+			return w->x->contacts->bare[state];
+	}
+	return NONE;
+}
+
 int held_force(struct sequencing *w, int force_column)
 {
 	const struct contacts *c = w->x->contacts;
 	struct sum force = { 0 };
-	if (!c)
+	if (!c || solved_force(w, force_column) != NONE)
 		return w->x->force[force_column];
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
@@ -345,6 +565,7 @@ void hold_contacts(struct sequencing *w)
 		return;
 	struct contacts *c = all.c = w->x->contacts = NEW(struct contacts);
 	c->bare = ARRAY(int, w->system->states);
+	c->solved = ARRAY(bool, w->system->states);
 	for (int i = 0; i < w->system->states; i++)
 		c->bare[i] = NONE;
 	c->none = all.none = sequence_of_form(w, form_number(0));
@@ -357,10 +578,7 @@ void hold_contacts(struct sequencing *w)
 		make_hold(&all, i);
 	for (int i = 0; i < all.constraints; i++)
 		make_slip(&all, i);
-	for (int i = 0; i < all.constraints; i++)
-		all.constraint[i].bare = bare_rate(w, &all.constraint[i]);
-	for (int i = 0; i < all.constraints; i++)
-		make_force(&all, i);
+	make_forces(&all);
 	for (int i = 0; i < all.constraints; i++)
 		watch_hold(&all, i);
 	for (int i = 0; i < model->contacts.impacts; i++)
@@ -368,7 +586,7 @@ void hold_contacts(struct sequencing *w)
 	sort_watches(c, w->system->states);
 	for (int i = 0; i < all.constraints; i++) {
 		c->hold[i].force = all.constraint[i].force;
-		c->hold[i].force_direction = all.constraint[i].force_direction;
+		c->hold[i].force_direction = all.constraint[i].slope_direction;
 		c->hold[i].gives = all.constraint[i].gives;
 		c->hold[i].only = only_state(w, all.constraint[i].velocity);
 	}

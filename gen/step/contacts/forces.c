@@ -7,9 +7,6 @@
 #include "step/series/expansion.h"
 #include "inner.h"
 
-#include <math.h>
-#include <stdlib.h>
-
 /* ---- factors ---- */
 
 static struct entry *entries(int count)
@@ -27,7 +24,7 @@ static bool is_zero(const struct entry *e)
 	return e->sequence == NONE && mpq_sgn(e->number) == 0;
 }
 
-static bool is_number(const struct entry *e)
+bool is_number_entry(const struct entry *e)
 {
 	return e->sequence == NONE;
 }
@@ -71,9 +68,9 @@ static void dot_entries(struct sequencing *w, int count, const struct entry *a, 
 	for (int i = 0; i < count; i++) {
 		if (is_zero(&a[i]) || is_zero(&b[i]))
 			continue;
-		if (is_number(&a[i]) && is_number(&b[i]))
+		if (is_number_entry(&a[i]) && is_number_entry(&b[i]))
 			rational_addmul(entry->number, a[i].number, b[i].number);
-		else if (is_number(&a[i]))
+		else if (is_number_entry(&a[i]))
 			sum_add_entry(&sum, b[i].sequence, &a[i], one);
 		else
 			sum_add_entry(&sum, a[i].sequence, &b[i], one);
@@ -87,14 +84,14 @@ static void dot_entries(struct sequencing *w, int count, const struct entry *a, 
 
 int entry_sequence(struct sequencing *w, const struct entry *entry)
 {
-	return is_number(entry) ? sequence_of_form(w, form_constant(entry->number)) : entry->sequence;
+	return is_number_entry(entry) ? sequence_of_form(w, form_constant(entry->number)) : entry->sequence;
 }
 
 int quotient_by_entry(struct sequencing *w, int a, const struct entry *below)
 {
 	RATIONAL part = ZERO;
 	struct sum sum = { 0 };
-	if (!is_number(below))
+	if (!is_number_entry(below))
 		return new_sequence(w, (struct sequence){ .kind = SEQUENCE_QUOTIENT, .state = NONE, .a = a,
 							  .b = below->sequence });
 	mpq_inv(part, below->number);
@@ -178,7 +175,8 @@ static struct constraint *add_constraint(struct constraints *all, const struct m
 	const int states = all->w->system->states;
 	struct constraint *h = MORE(all->constraint, all->constraints);
 	*h = (struct constraint){ .impact = NONE, .drag = NONE, .slips = NONE, .moving = moving,
-				  .force_direction = entries(states), .row = entries(states),
+				  .force_direction = entries(states),
+				  .slope_direction = ARRAY(struct entry, states), .row = entries(states),
 				  .sample = ARRAY(double, states),
 				  .gives = entries(all->w->system->force_columns) };
 	return h;
@@ -226,7 +224,7 @@ static void add_constraints(struct constraints *all)
 
 static void check_answer(const struct constraint *h, const struct entry *answer)
 {
-	if (!h->node || !is_number(answer))
+	if (!h->node || !is_number_entry(answer))
 		return;
 	if (mpq_sgn(answer->number) == 0)
 		error(h->node->at, "its velocity has to answer to its force", "friction cannot hold what slides there");
@@ -272,6 +270,9 @@ void find_constraints(struct constraints *all)
 {
 	add_constraints(all);
 	find_all_delassus(all);
+	for (int i = 0; i < all->constraints; i++)
+		for (int k = 0; k < all->w->system->states; k++)
+			all->constraint[i].slope_direction[k] = all->constraint[i].force_direction[k];
 	group_constraints(all);
 }
 
@@ -293,23 +294,10 @@ static int bare_slope(struct sequencing *w, int state)
 	return *made;
 }
 
-/* Highest derivatives stand inside of atoms there: those of a mass matrix that moves are known by their solution. */
-static int bare_rate_with_atoms(struct sequencing *w, const struct form *rate)
-{
-	for (int j = 0; j < w->system->n; j++) {
-		int velocity = w->system->velocity[j], slope = bare_slope(w, velocity >= 0 ? velocity : j);
-		if (w->highest[j] == NONE)
-			w->highest[j] = slope;
-	}
-	return sequence_of_form(w, rate);
-}
-
 int bare_rate(struct sequencing *w, const struct constraint *h)
 {
 	struct sum sum = { 0 };
 	RATIONAL one = RATIO(1, 1);
-	if (h->moving)
-		return bare_rate_with_atoms(w, h->rate);
 	for (int i = 0; i < h->rate->terms; i++) {
 		const struct form_term *term = &h->rate->term[i];
 		struct form single = { 1, &h->rate->term[i], 0 };
@@ -322,7 +310,7 @@ int bare_rate(struct sequencing *w, const struct constraint *h)
 	return sequence_of_sum(w, &sum);
 }
 
-/* ---- forces of those that hold together ---- */
+/* ---- where they move: one system for the group, in which what does not hold has a row of its own ---- */
 
 int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other)
 {
@@ -331,223 +319,232 @@ int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, 
 						  .a = held, .b = other });
 }
 
-struct together {
-	struct constraints *all;
-	int of;                     /* the constraint whose force is made */
-	int members, *member;       /* of its group, itself first */
-	bool *holds;                /* per member */
+/* `held` where a constraint holds and no conflict, of which it is the last, stands against that; else `other` */
+static int where_it_holds(const struct constraints *all, int index, int held, int other)
+{
+	struct sequencing *w = all->w;
+	const struct contacts *c = all->c;
+	if (held == other)
+		return held;
+	for (int k = 0; k < c->conflicts; k++) {
+		int all_hold = other;
+		if (c->conflict[k].set >> index != 1)
+			continue;
+		for (int i = 0; i < index; i++)
+			if (c->conflict[k].set >> i & 1)
+				all_hold = hold_choice(w, &c->hold[i], all_hold, held);
+		held = all_hold;
+	}
+	return hold_choice(w, &c->hold[index], held, other);
+}
+
+/* Accelerations of all equations that the group's mass matrices couple, then the forces of its members. A motion is
+ * M q'' + sum of c force = f, and of a force n q'' + n' q' = 0 where it holds, else it is known. */
+struct joined {
+	const struct constraints *all;
+	int members, *member;
+	int accelerations;
+	int *coord;                 /* per acceleration; a multiplier has none, and a number beyond the coordinates */
+	bool *coupled;              /* per state: its slope is one of them */
+	struct linear_equations *e;
 };
 
-/* inverse: of the answers among those that hold; false: there is none */
-static bool invert(const struct together *t, int count, const int *which, mpq_t *inverse)
+static int state_of_coord(const struct sequencing *w, int coord)
 {
-	mpq_t *a = rationals((size_t)(count * count));
-	for (int i = 0; i < count; i++)
-		for (int j = 0; j < count; j++)
-			mpq_set(a[i * count + j], t->all->constraint[which[i]].delassus[which[j]].number);
-	int column;
-	return rational_inverse(count, a, inverse, &column);
+	int velocity = coord < w->system->n ? w->system->velocity[coord] : NONE;
+	return coord >= w->system->n ? NONE : velocity >= 0 ? velocity : coord;
 }
 
-static double dot_samples(const struct constraints *all, int a, int b)
+static bool acts_on(const struct joined *g, const struct linear_system *mass)
 {
-	double sum = 0;
-	for (int i = 0; i < all->w->system->states; i++)
-		sum += all->constraint[a].sample[i] * all->constraint[b].sample[i];
-	return sum;
-}
-
-/* Whether one is always a sum of others: by their Gram matrix at some state, by Cholesky */
-static bool are_dependent(const struct constraints *all, int count, const int *which)
-{
-	double *a = ARRAY(double, count * count);
-	for (int i = 0; i < count; i++)
-		for (int j = 0; j <= i; j++) {
-			double sum = dot_samples(all, which[i], which[j]);
-			for (int k = 0; k < j; k++)
-				sum -= a[i * count + k] * a[j * count + k];
-			if (i == j && !(sum > 1e-9 * dot_samples(all, which[i], which[i])))
-				return true;
-			a[i * count + j] = i == j ? sqrt(sum) : sum / a[j * count + j];
+	bool any = false;
+	for (int i = 0; i < mass->n; i++) {
+		int state = state_of_coord(g->all->w, mass->written->highest[i].index);
+		for (int k = 0; k < g->members && state != NONE; k++) {
+			const struct constraint *h = &g->all->constraint[g->member[k]];
+			any = any || !is_zero(&h->row[state]) || !is_zero(&h->force_direction[state]);
 		}
-	return false;
-}
-
-/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
-static int side_beside(const struct constraints *all, int friction, int contact)
-{
-	const struct entry *answer = &all->constraint[friction].delassus[contact];
-	bool along = is_number(answer) ? mpq_sgn(answer->number) < 0 : dot_samples(all, friction, contact) > 0;
-	return along == all->c->hold[friction].above ? 1 : -1;
-}
-
-static void note_conflict(const struct constraints *all, int count, const int *which)
-{
-	struct contacts *c = all->c;
-	struct conflict new = { .hold = NONE };
-	for (int i = 0; i < count; i++)
-		new.set |= 1UL << which[i];
-	for (int i = 0; i < c->conflicts; i++)
-		if ((c->conflict[i].set & new.set) == c->conflict[i].set)
-			return;
-	int frictions = 0, at = 0;
-	for (int i = 0; i < count; i++) {
-		bool drags = all->constraint[which[i]].drag != NONE;
-		frictions += drags;
-		at = drags ? i : at;
 	}
-	if (frictions == count)
-		error(all->constraint[which[0]].node->at, "without one of them its part is known",
-		      "friction holds what other friction holds already: while all of it sticks its force is not "
-		      "determined");
-	if (count == 2 && frictions == 1) {
-		new.hold = which[at];
-		new.side = side_beside(all, which[at], which[!at]);
-	}
-	*MORE(c->conflict, c->conflicts) = new;
+	return any;
 }
 
-/* What its velocity would gain without the forces of those that hold, reversed */
-static struct sum needed_rate(const struct together *t, int constraint)
+static void add_mass(struct joined *g, const struct linear_system *mass)
 {
-	const struct constraint *h = &t->all->constraint[constraint];
+	struct sequencing *w = g->all->w;
+	struct linear_equations *e = g->e;
+	const int first = g->accelerations;
+	for (int i = 0; i < mass->n; i++) {
+		const int row = first + i, coord = mass->written->highest[i].index;
+		*MORE(g->coord, g->accelerations) = coord;
+		e->right[row] = mass->f[i]->terms ? sequence_of_form(w, mass->f[i]) : NONE;
+		for (int j = 0; j < mass->n; j++)
+			if (mass->M[i * mass->n + j]->terms)
+				e->matrix[row * e->n + first + j] = sequence_of_form(w, mass->M[i * mass->n + j]);
+		if (state_of_coord(w, coord) != NONE)
+			g->coupled[state_of_coord(w, coord)] = true;
+	}
+}
+
+static int force_on(const struct joined *g, int acceleration, int k)
+{
+	const struct moving_contact *moving = g->all->constraint[g->member[k]].moving;
+	const int coord = g->coord[acceleration];
+	const struct form *force = moving && coord < g->all->w->system->n ? moving->force[coord] : NULL;
+	return force && force->terms ? sequence_of_form(g->all->w, force) : NONE;
+}
+
+/* What the slopes of the other states are, as they stand in its rate: by a force of 1, or without any */
+static void answer_beside(const struct joined *g, int k, const struct constraint *of, struct entry *answer)
+{
+	struct sequencing *w = g->all->w;
+	const struct constraint *h = &g->all->constraint[g->member[k]];
+	struct entry *beside = entries(w->system->states);
+	for (int i = 0; i < w->system->states; i++)
+		if (!g->coupled[i] && of)
+			beside[i] = of->force_direction[i];
+		else if (!g->coupled[i] && !is_zero(&h->row[i]))
+			beside[i].sequence = bare_slope(w, i);
+	dot_entries(w, w->system->states, h->row, beside, answer);
+}
+
+/* The rate without what the system solves for, reversed */
+static int right_where_held(const struct joined *g, int k)
+{
+	struct sequencing *w = g->all->w;
+	const struct constraint *h = &g->all->constraint[g->member[k]];
+	struct entry *beside = entries(1);
 	struct sum sum = { 0 };
 	RATIONAL minus = RATIO(-1, 1);
-	sum_add(&sum, TERM_SEQUENCE, h->bare, 0, minus);
-	for (int j = 0; j < t->members; j++) {
-		const struct constraint *other = &t->all->constraint[t->member[j]];
-		if (!t->holds[j] && other->slips != NONE)
-			sum_add_entry(&sum, other->slips, &h->delassus[t->member[j]], minus);
+	answer_beside(g, k, NULL, beside);
+	sum_add(&sum, TERM_SEQUENCE, entry_sequence(w, beside), 0, minus);
+	if (h->moving)
+		sum_add_form(w, &sum, h->moving->rest, minus);
+	for (int i = 0; i < h->rate->terms && !h->moving; i++) {
+		struct form single = { 1, &h->rate->term[i], 0 };
+		if (rate_state(w, &h->rate->term[i].basis) == NONE)
+			sum_add_form(w, &sum, &single, minus);
 	}
-	return sum;
-}
-
-/* Of constraint `of`, where answers are numbers */
-static int force_by_numbers(const struct together *t, int count, const int *which, const mpq_t *inverse)
-{
-	struct sum sum = { 0 };
-	RATIONAL part = ZERO;
-	for (int i = 0; i < count; i++) {
-		const struct constraint *h = &t->all->constraint[which[i]];
-		mpq_neg(part, inverse[i]);
-		sum_add(&sum, TERM_SEQUENCE, h->bare, 0, part);
-		for (int j = 0; j < t->members; j++) {
-			const struct constraint *other = &t->all->constraint[t->member[j]];
-			if (!t->holds[j] && other->slips != NONE)
-				sum_add_entry(&sum, other->slips, &h->delassus[t->member[j]], part);
-		}
-	}
-	return sum_sequence(t->all->w, &sum);
-}
-
-static int residual_of_answers(struct sequencing *w, const struct linear_equations *e, int row)
-{
-	struct sum sum = { 0 };
-	RATIONAL one = RATIO(1, 1), minus = RATIO(-1, 1);
-	for (int j = 0; j < e->n; j++)
-		if (e->matrix[row * e->n + j] != NONE)
-			add_product(&sum, e->matrix[row * e->n + j], e->first + j, one);
-	sum_add(&sum, TERM_SEQUENCE, e->right[row], 0, minus);
 	return sum_sequence(w, &sum);
 }
 
-/* The first of the forces of all that hold, in the order of `which` */
-static int solve_answers(const struct together *t, int count, const int *which)
+static void add_member(struct joined *g, int k)
 {
-	struct sequencing *w = t->all->w;
-	struct linear_equations *e = NEW(struct linear_equations);
-	*e = (struct linear_equations){ .n = count, .number = w->x->equations++,
-					.matrix = ARRAY(int, count * count), .right = ARRAY(int, count),
-					.residual = ARRAY(int, count) };
-	for (int i = 0; i < count; i++) {
-		struct sum rate = needed_rate(t, which[i]);
-		e->right[i] = sum_sequence(w, &rate);
-		for (int j = 0; j < count; j++) {
-			const struct entry *answer = &t->all->constraint[which[i]].delassus[which[j]];
-			e->matrix[i * count + j] = is_zero(answer) ? NONE : entry_sequence(w, answer);
-		}
+	const struct constraints *all = g->all;
+	struct linear_equations *e = g->e;
+	const struct constraint *h = &all->constraint[g->member[k]];
+	const int row = g->accelerations + k, one = sequence_of_form(all->w, form_number(1));
+	for (int i = 0; i < g->accelerations; i++) {
+		int state = state_of_coord(all->w, g->coord[i]);
+		if (state != NONE && !is_zero(&h->row[state]))
+			e->matrix[row * e->n + i] = where_it_holds(all, g->member[k],
+								   entry_sequence(all->w, &h->row[state]), all->none);
+		e->matrix[i * e->n + row] = force_on(g, i, k);
 	}
-	e->first = w->x->count;
-	for (int j = 0; j < count; j++)
-		new_sequence(w, (struct sequence){ .kind = SEQUENCE_SOLUTION, .state = NONE, .a = NONE, .b = NONE,
-						   .equations = e, .component = j });
-	for (int i = 0; i < count; i++)
-		e->residual[i] = residual_of_answers(w, e, i);
-	return e->first;
-}
-
-static int compare_members(const void *a, const void *b)
-{
-	return *(const int *)a - *(const int *)b;
-}
-
-/* The same where the answers move; forces of the same ones are made once. */
-static int force_that_moves(const struct together *t, int count, int *which)
-{
-	struct constraints *all = t->all;
-	unsigned long set = 0;
-	int known = 0, place = 0;
-	qsort(which, (size_t)count, sizeof *which, compare_members);
-	for (int i = 0; i < count; i++) {
-		set |= 1UL << which[i];
-		place = which[i] == t->of ? i : place;
+	for (int l = 0; l < g->members; l++) {
+		struct entry *answer = entries(1);
+		answer_beside(g, k, &all->constraint[g->member[l]], answer);
+		if (l == k || !is_zero(answer))
+			e->matrix[row * e->n + g->accelerations + l] = where_it_holds(
+				all, g->member[k], entry_sequence(all->w, answer), l == k ? one : all->none);
 	}
-	while (known < all->solved && all->forces[known].set != set)
-		known++;
-	if (known == all->solved) {
-		struct sum rate = needed_rate(t, which[0]);
-		int first = count > 1 ? solve_answers(t, count, which)
-				      : quotient_by_entry(all->w, sequence_of_sum(all->w, &rate),
-							  &all->constraint[which[0]].delassus[which[0]]);
-		*MORE(all->forces, all->solved) = (struct answered){ set, first };
+	e->right[row] = where_it_holds(all, g->member[k], right_where_held(g, k),
+				       h->slips == NONE ? all->none : h->slips);
+}
+
+static int residual_of_motion(const struct joined *g, const struct form *written, int row)
+{
+	struct sequencing *w = g->all->w;
+	struct sum sum = { 0 };
+	RATIONAL one = RATIO(1, 1);
+	sum_add_form(w, &sum, written, one);
+	for (int k = 0; k < g->members; k++) {
+		const struct moving_contact *moving = g->all->constraint[g->member[k]].moving;
+		const int coord = g->coord[row], force = g->all->constraint[g->member[k]].force;
+		struct entry *factor = entries(1);
+		if (!moving || coord >= w->system->n)
+			continue;
+		set_entry(w, moving->force[coord], factor);
+		sum_add_entry(&sum, force, factor, one);
 	}
-	return all->forces[known].first + place;
+	return sequence_of_sum(w, &sum);
 }
 
-/* Of member 0, where these hold and the others of the group slip */
-static int force_together(const struct together *t)
+static int residual_of_member(const struct joined *g, int k)
 {
-	int count = 0, *which = ARRAY(int, t->members);
-	bool moves = false;
-	for (int i = 0; i < t->members; i++)
-		if (t->holds[i])
-			which[count++] = t->member[i];
-	for (int i = 0; i < count * count; i++)
-		moves = moves || !is_number(&t->all->constraint[which[i / count]].delassus[which[i % count]]);
-	mpq_t *inverse = rationals((size_t)(count * count));
-	if (moves ? are_dependent(t->all, count, which) : !invert(t, count, which, inverse)) {
-		note_conflict(t->all, count, which);
-		return t->all->none;
+	struct sequencing *w = g->all->w;
+	struct constraint *h = &g->all->constraint[g->member[k]];
+	struct sum known = { 0 };
+	RATIONAL one = RATIO(1, 1), minus = RATIO(-1, 1);
+	sum_add(&known, TERM_SEQUENCE, h->force, 0, one);
+	if (h->slips != NONE)
+		sum_add(&known, TERM_SEQUENCE, h->slips, 0, minus);
+	h->bare = sequence_of_form(w, h->rate);
+	return where_it_holds(g->all, g->member[k], h->bare, sequence_of_sum(w, &known));
+}
+
+/* Highest derivatives of all coordinates, with the forces of the group */
+static void find_highest(const struct joined *g)
+{
+	struct sequencing *w = g->all->w;
+	RATIONAL one = RATIO(1, 1);
+	for (int i = 0; i < g->accelerations; i++) {
+		w->highest[g->coord[i]] = g->e->first + i;
+		const int state = state_of_coord(w, g->coord[i]);
+		if (state == NONE)
+			continue;
+		g->all->c->bare[state] = g->e->first + i;
+		g->all->c->solved[state] = true;
 	}
-	return moves ? force_that_moves(t, count, which) : force_by_numbers(t, count, which, inverse);
+	for (int j = 0; j < w->system->n; j++) {
+		const int state = state_of_coord(w, j);
+		struct sum slope = { 0 };
+		if (g->coupled[state])
+			continue;
+		sum_add(&slope, TERM_SEQUENCE, bare_slope(w, state), 0, one);
+		for (int k = 0; k < g->members; k++)
+			sum_add_entry(&slope, g->all->constraint[g->member[k]].force,
+				      &g->all->constraint[g->member[k]].force_direction[state], one);
+		w->highest[j] = sequence_of_sum(w, &slope);
+	}
 }
 
-static int force_in_cases(struct together *t, int next)
+void solve_group(const struct constraints *all, int members, int *member)
 {
-	if (next == t->members)
-		return force_together(t);
-	t->holds[next] = true;
-	int held = force_in_cases(t, next + 1);
-	t->holds[next] = false;
-	int free = force_in_cases(t, next + 1);
-	return hold_choice(t->all->w, &t->all->c->hold[t->member[next]], held, free);
-}
-
-void make_force(struct constraints *all, int index)
-{
-	enum { MOST = 4 };
 	struct sequencing *w = all->w;
-	struct constraint *h = &all->constraint[index];
-	struct together t = { all, index, 1, ARRAY(int, all->constraints), ARRAY(bool, all->constraints) };
-	t.member[0] = index;
-	t.holds[0] = true;
-	for (int i = 0; i < all->constraints; i++)
-		if (i != index && all->constraint[i].group == h->group)
-			t.member[t.members++] = i;
-	if (t.members > MOST)
-		error(h->node ? h->node->at : w->step->model->contacts.impact[h->impact].when->at,
-		      "a piecewise-linear model takes more",
-		      "beside what is not piecewise linear at most %d frictions and contacts act on each other", MOST);
-	int held = force_in_cases(&t, 1);
-	h->force = hold_choice(w, &all->c->hold[index], held, h->slips == NONE ? all->none : h->slips);
+	const struct model_contacts *contacts = &w->step->model->contacts;
+	struct linear_equations *e = NEW(struct linear_equations);
+	struct joined g = { .all = all, .members = members, .member = member, .e = e,
+			   .coupled = ARRAY(bool, w->system->states) };
+	e->n = members;
+	for (int i = 0; i < contacts->masses; i++)
+		e->n += acts_on(&g, contacts->mass[i]) ? contacts->mass[i]->n : 0;
+	e->number = w->x->equations++;
+	e->matrix = ARRAY(int, e->n * e->n);
+	e->right = ARRAY(int, e->n);
+	e->residual = ARRAY(int, e->n);
+	for (int i = 0; i < e->n * e->n; i++)
+		e->matrix[i] = NONE;
+	for (int i = 0; i < contacts->masses; i++)
+		if (acts_on(&g, contacts->mass[i]))
+			add_mass(&g, contacts->mass[i]);
+	for (int k = 0; k < members; k++)
+		add_member(&g, k);
+	e->first = w->x->count;
+	for (int i = 0; i < e->n; i++)
+		new_sequence(w, (struct sequence){ .kind = SEQUENCE_SOLUTION, .state = NONE, .a = NONE, .b = NONE,
+						   .equations = e, .component = i });
+	for (int k = 0; k < members; k++)
+		all->constraint[member[k]].force = e->first + g.accelerations + k;
+	find_highest(&g);
+	for (int i = 0, row = 0; i < contacts->masses; i++)
+		for (int j = 0; j < contacts->mass[i]->n && acts_on(&g, contacts->mass[i]); j++, row++)
+			e->residual[row] = residual_of_motion(&g, contacts->mass[i]->written->residual[j], row);
+	for (int k = 0; k < members; k++) {
+		struct constraint *h = &all->constraint[member[k]];
+		h->solved = true;
+		e->residual[g.accelerations + k] = residual_of_member(&g, k);
+		for (int i = 0; i < w->system->states; i++)     /* their slopes are solved for */
+			if (g.coupled[i])
+				h->slope_direction[i] = entries(1)[0];
+	}
 }

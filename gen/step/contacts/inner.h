@@ -16,11 +16,13 @@ struct constraint {
 	const struct node *node;    /* of friction */
 	/* per state: what its force, 1, adds to the slope; that of a contact presses off */
 	struct entry *force_direction;
+	struct entry *slope_direction; /* the same but for slopes that are solved for with it */
 	struct entry *row;          /* per state: the factor of its slope in the rate, */
 	double *sample;             /* and that as a number somewhere */
 	struct entry *gives;        /* per force column: what its force, 1, adds */
 	struct entry *delassus;     /* per constraint: what the force of that adds to the rate of the velocity here */
-	int bare;                   /* sequences: that rate without any of these forces, */
+	bool solved;                /* its force is solved for, with the equations of a mechanism */
+	int bare;                   /* sequences: the rate without any of these forces; with all where `solved`, */
 	int slips, force;           /* the force while it slips, NONE: there is none; now */
 	int group;
 };
@@ -30,13 +32,13 @@ struct constraints {
 	struct constraint *constraint;
 	struct contacts *c;
 	int none;                   /* a sequence: 0 */
-	int solved;                 /* of those that hold, as bits: their forces, one sequence behind the other */
-	struct answered { unsigned long set; int first; } *forces;
 };
 void find_constraints(struct constraints *all);
 int  bare_rate(struct sequencing *w, const struct constraint *h); /* without what holds: a sequence */
 int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
-void make_force(struct constraints *all, int index);
+/* Forces of those that act on each other */
+void solve_group(const struct constraints *all, int members, int *member);
+bool is_number_entry(const struct entry *e);
 void sum_add_entry(struct sum *sum, int sequence, const struct entry *entry, mpq_srcptr factor);
 int  entry_sequence(struct sequencing *w, const struct entry *entry);
 int  quotient_by_entry(struct sequencing *w, int a, const struct entry *below);

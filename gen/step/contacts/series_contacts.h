@@ -42,6 +42,7 @@ struct series_jump { int state, watch; }; /* a state takes the value of what is 
 struct contacts {
 	bool moves;                 /* some of it is what is watched, and no number */
 	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
+	bool *solved;               /* per state: that is solved for, with what holds */
 	int holds;
 	struct series_hold *hold;
 	int series_impacts;
@@ -60,6 +61,8 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
+/* of a force column: the slope that is solved for, with what holds; NONE: it is not */
+int  solved_force(const struct sequencing *w, int force_column);
 int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
 
 /* switching.c: those whose way counts stand first */
