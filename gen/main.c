@@ -279,6 +279,12 @@ static bool choose(struct work *w)
 	return w->step;
 }
 
+/* Of what is printed the C and its header have derivatives. */
+static bool derive(struct work *w)
+{
+	return w->options.print > PRINT_HEADER || w->options.fmu || find_derivatives(w->step);
+}
+
 /* ---- from a step to texts ---- */
 
 static const char *base_name(const char *path)
@@ -580,7 +586,7 @@ static bool compile(struct work *w)
 		target_float();
 	if (w->options.campbell || w->options.equilibrium)
 		return print_many(w, w->options.campbell ? find_and_print_campbell : find_and_print_equilibria);
-	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) ||
+	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) || !derive(w) ||
 	    (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;
 	print_header(w);

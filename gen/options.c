@@ -260,6 +260,8 @@ static const struct row {
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  .take = take_accuracy },
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
+	{ "sensitivity", "k,c,x", "also emit derivatives by params, initial values, inputs: NAME_step_d",
+	  .text = AT(request.sensitivity) },
 	{ "fast", NULL, "with tables for long runs: NAME_run by blocks of rows, and --refresh",
 	  .flag = AT(request.fast) },
 	{ "refresh", "N", "cos, sin, exp of loads every N steps, rotated between by a table; 1: every step (default)",
@@ -450,6 +452,7 @@ static void note_all(struct options *options)
 	const char *slash = options->params ? strrchr(options->params, '/') : NULL;
 	note_value(options, "--params", slash ? slash + 1 : options->params);
 	note_value(options, "--modes", request->modes ? format("\"%s\"", request->modes) : NULL);
+	note_value(options, "--sensitivity", request->sensitivity);
 	note_value(options, "--step", request->step);
 	note_value(options, "--prefix", request->prefix);
 	note_flag(options, "--loads remainder", request->loads_left);

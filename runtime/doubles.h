@@ -55,6 +55,7 @@
 #undef pl_lead_change
 #undef pl_lead_start
 #undef pl_magnitude
+#undef pl_derivatives
 #undef pl_model
 #undef pl_multiply
 #undef pl_multiply_add

@@ -55,6 +55,7 @@
 #define pl_lead_change pl_leadf_change
 #define pl_lead_start pl_leadf_start
 #define pl_magnitude pl_magnitudef
+#define pl_derivatives pl_derivativesf
 #define pl_model pl_modelf
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add

@@ -44,6 +44,12 @@
 #ifndef PL_CONVERTED
 #define PL_CONVERTED 0
 #endif
+#ifndef PL_SEEDED
+#define PL_SEEDED 0
+#endif
+#ifndef PL_SLOPED
+#define PL_SLOPED 0
+#endif
 #ifndef PL_DERIVED
 #define PL_DERIVED 0
 #endif

@@ -593,3 +593,16 @@ typedef struct pl_model {
      * `hold` takes rows 0 to m - 1 in turn, step k row k + m.  NULL if there are no inputs. */
     const int *start_samples;
 } pl_model;
+
+/* NAME_derivatives, of a model that has some: how large a struct NAME_d is, and what its columns are by.  J has a row
+ * for each output, in it an entry for each column; du may be NULL; status: 0 or PL_D_... bits. */
+typedef struct pl_derivatives {
+    size_t size;
+    int columns;
+    const char *const *names;
+    void (*init)(void *s, void *ds);        /* both to t = 0 */
+    void (*step)(void *s, void *ds, const PL_REAL *u, const PL_REAL *du);
+    void (*out)(const void *s, const void *ds, PL_REAL *J);
+    void (*hold)(void *ds, const PL_REAL *du);  /* before the first step; NULL where no seed is a ramp */
+    unsigned (*status)(const void *ds);
+} pl_derivatives;

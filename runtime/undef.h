@@ -53,7 +53,10 @@
 #undef PL_EVENT_SPLIT
 #undef PL_DAMPED
 #undef PL_DEGREE
+#undef PL_DERIVATIVES
 #undef PL_DIRECT
+#undef PL_SEEDED
+#undef PL_SLOPED
 #undef PL_SWITCHING_TABLES
 #undef PL_DRIVEN
 #undef PL_EACH

@@ -41,6 +41,7 @@ enum {
 	LIMIT_STATES = 512,
 	LIMIT_CHANGES = 1000,       /* of formula in time */
 	LIMIT_TUNABLES = 16,        /* params that the target may change */
+	LIMIT_SENSITIVITIES = 64,   /* params, initial values and inputs that derivatives are by */
 	LIMIT_FORMULAS = 65535,     /* numbers that follow from them, constants counted: a short in pl_operation */
 	/* states, loads and inputs of an independent block whose e^{A h} the target computes */
 	LIMIT_TUNED_BLOCK = 64,

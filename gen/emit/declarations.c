@@ -188,14 +188,14 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	declare_tables(e);
 }
 
-void open_declarations(const struct emitter *e, const char *included)
+void open_declarations(const struct emitter *e, const char *guard, const char *included)
 {
-	say(e, "#ifndef $N_DECLARED\n"
-	       "#define $N_DECLARED\n"
+	say(e, "#ifndef %s_DECLARED\n"
+	       "#define %s_DECLARED\n"
 	       "\n%s"
 	       "#ifdef __cplusplus\n"
 	       "extern \"C\" {\n"
-	       "#endif\n\n", included);
+	       "#endif\n\n", guard, guard, included);
 }
 
 void close_declarations(const struct emitter *e)
@@ -214,7 +214,7 @@ void emit_counts(const struct emitter *e, int inputs)
 
 void emit_declarations(const struct emitter *e, bool rhs)
 {
-	open_declarations(e, e->model->request.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
+	open_declarations(e, e->upper, e->model->request.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
 						    : "#include \"plrt.h\"\n\n");
 	emit_counts(e, given_inputs(e));
 	emit_if_any(e->prints->constants, e);

@@ -18,10 +18,13 @@ void banner_collocated(const struct emitter *e);
 void banner_normal(const struct emitter *e);
 const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
 const char **names_of_inputs(const struct emitter *e);
+/* enum { NAME_KIND_..., ... } */
+void emit_names_of(const struct emitter *e, const char *kind, const char *const *name, int count);
 void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
 void declare_model(const struct emitter *e);               /* the descriptor, and units where there are some */
 void announce(const struct emitter *e, const char *text, const char *comment);     /* one declaration */
-void open_declarations(const struct emitter *e, const char *included);
+/* guard: GUARD_DECLARED, which keeps them from being read twice */
+void open_declarations(const struct emitter *e, const char *guard, const char *included);
 void close_declarations(const struct emitter *e);
 void emit_counts(const struct emitter *e, int inputs);            /* NAME_STATES and the like */
 void declare_reading(const struct emitter *e, const char *status_note);           /* get, time, status */

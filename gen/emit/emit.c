@@ -50,7 +50,7 @@ static bool step_reads_load(const struct emitter *e, int load)
 {
 	const struct step *step = e->step;
 	const struct splitting *split = e->model->remainder.split;
-	bool read = step->is.tuned;   /* for other params any may be */
+	bool read = step->is.tuned || derivatives_read_load(step, load);  /* for other params any may be */
 	if (e->model->switching)
 		read = step->regions.parts ? step->layout.load[load] >= 0 : loads_of_regions(step)[load];
 	for (int k = 0; step->normal && k < split->forcings; k++)
@@ -96,6 +96,10 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 		e.ramps = e.ramps || e.system->input[i].hold;
 	e.local = ARRAY(const char *, (size_t)e.system->states);
 	e.c = identifiers_of(step->model, e.upper, e.local);
+	const int blocks = step->derivatives ? step->derivatives->blocks : 0;
+	e.beside = ARRAY(struct emitter, (size_t)blocks + 1);
+	for (int b = 0; b < blocks; b++)
+		e.beside[b] = emitter_new(to, step->derivatives->block[b].step, options);
 	return e;
 }
 
@@ -185,6 +189,8 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 	emit_declarations(&e, rhs);
 	if (e.model->delays)
 		emit_delay_declarations(&e);
+	if (step->derivatives)
+		emit_derivative_declarations(&e);
 }
 
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)
@@ -198,6 +204,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_declarations(e, rhs);
 	if (!header_name && e->model->delays)
 		emit_delay_declarations(e);
+	if (!header_name && step->derivatives)
+		emit_derivative_declarations(e);
 	emit_includes(e, rhs);
 	emit_all_tables(e);
 	emit_modes(e);
@@ -212,5 +220,7 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 	emit_run(e);
 	emit_declared_tables(e);
 	emit_further_functions(e, rhs);
+	if (e->step->derivatives)
+		emit_step_derivatives(e);
 	(e->model->delays ? emit_delays : emit_descriptor)(e);
 }

@@ -67,7 +67,7 @@ void emit_delay_declarations(const struct emitter *core)
 	const struct delays *d = delays_of(core);
 	const struct emitter outer = around(core), *e = &outer;
 	say(e, "\n/* $n: $n_core, whose last inputs are %s */\n", delay_list(core));
-	open_declarations(e, "");
+	open_declarations(e, e->upper, "");
 	emit_counts(e, d->inputs);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(d->h)));
 	emit_delay_struct(e, samples_kept(core), core->ramps);

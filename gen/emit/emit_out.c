@@ -64,6 +64,11 @@ static bool *kept_states(const struct emitter *e, const struct formulas *f)
 	return kept;
 }
 
+static bool is_wanted(const struct emitter *e, int output)
+{
+	return !e->at || e->at->output[output];
+}
+
 /* Their values; first the highest derivatives that they read, as locals */
 static struct formulas *formulas_of_outputs(const struct emitter *e)
 {
@@ -72,13 +77,14 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 	tape_ref *value = ARRAY(tape_ref, (size_t)model->outputs + 1);
 	int forms = 0;
 	for (int i = 0; i < model->outputs; i++)
-		if (model->output[i].left)
+		if (model->output[i].left && is_wanted(e, i))
 			form[forms++] = model->output[i].left;
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, forms, form);
 	struct tape *t = formulas_tape(f);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
-		value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
+		if (is_wanted(e, i))
+			value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
 	}
 	const struct reads r = reads_of(written_model(model), forms, form);
 	for (int k = 0; k < written_model(model)->n; k++)
@@ -86,7 +92,9 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 			tape_set_local(t, format("accel%d", k + 1),
 				       tape_of_row(t, e->step, model->equations.highest[k]));
 	for (int i = 0; i < model->outputs; i++)
-		tape_set(t, format("out[%d]", i), value[i], 13, model->output[i].name);
+		if (is_wanted(e, i))
+			tape_set(t, e->at ? e->at->output[i] : format("out[%d]", i), value[i], 13,
+				 model->output[i].name);
 	formulas_finish(f);
 	return f;
 }
@@ -95,24 +103,17 @@ static void emit_input_locals(const struct emitter *e, const bool *wanted)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
 		if (wanted[i])
-			say(e, "    const double %s = %s;\n", input_name(e, i, 0), sample_kept(e, i));
+			say(e, "    const double %s = %s;\n", input_name(e, i, 0),
+			    e->at ? e->at->input[i] : sample_kept(e, i));
 		if (wanted[i + e->system->inputs])
-			say(e, "    const double %s = s->slope[%d];\n", input_name(e, i, 1), i);
+			say(e, "    const double %s = %s;\n", input_name(e, i, 1),
+			    e->at ? e->at->slope[i] : format("s->slope[%d]", i));
 	}
 }
 
-void emit_out(const struct emitter *e)
+void emit_outputs_now(const struct emitter *e)
 {
 	const struct model *model = e->model;
-	if (model->declared_outputs)
-		emit_direct_factors(e);
-	say(e, "\n%s(const $n *s, double out[$N_OUTPUTS])\n"
-	       "{\n", has_peaks(e) ? spell(e, "static void $n_now") : spell(e, "void $n_out"));
-	if (!model->declared_outputs) {
-		say(e, "    $n_get(s, out);\n"
-		       "}\n");
-		return;
-	}
 	struct formulas *f = formulas_of_outputs(e);
 	const struct reads r = reads_of_formulas(f);
 	const bool *reads = kept_states(e, f), left = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
@@ -129,6 +130,21 @@ void emit_out(const struct emitter *e)
 		say(e, "    double left[%d];\n"
 		       "    %s\n", model->remainder.force_columns, remainder_of_outputs(e));
 	emit_formulas(f, 4);
+}
+
+void emit_out(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	if (model->declared_outputs)
+		emit_direct_factors(e);
+	say(e, "\n%s(const $n *s, double out[$N_OUTPUTS])\n"
+	       "{\n", has_peaks(e) ? spell(e, "static void $n_now") : spell(e, "void $n_out"));
+	if (!model->declared_outputs) {
+		say(e, "    $n_get(s, out);\n"
+		       "}\n");
+		return;
+	}
+	emit_outputs_now(e);
 	say(e, "    (void)s;\n"
 	       "}\n");
 }

@@ -65,7 +65,7 @@ static const char **sorted_copy(const char *const *text, int count)
 
 /* enum { NAME_<kind>_<name>, ... }: capitals; what differs in its letters' size only as it is written; what is alike
  * even so (a coordinate x_dot beside x') with its place. */
-static void emit_names_of(const struct emitter *e, const char *kind, const char *const *name, int count)
+void emit_names_of(const struct emitter *e, const char *kind, const char *const *name, int count)
 {
 	enum { WIDTH = 110 };
 	if (count == 0)

@@ -214,8 +214,9 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (!reads || reads[i])
-			list = format("%s%s%s = %s[%d]%s%s", list, *list ? ", " : format("%s ", type), e->local[i],
-				      vector, place_of_state(e, i), mass ? " / " : "", mass ? mass : "");
+			list = format("%s%s%s = %s%s%s", list, *list ? ", " : format("%s ", type), e->local[i],
+				      e->at ? e->at->state[i] : format("%s[%d]", vector, place_of_state(e, i)),
+				      mass ? " / " : "", mass ? mass : "");
 	}
 	say_wrapped(e, *list ? format("%s;\n", list) : "");
 }

@@ -50,6 +50,12 @@ void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
 
 void emit_out(const struct emitter *e);
+void emit_outputs_now(const struct emitter *e);                   /* into out, or where they stand */
+/* ---- emit_derivatives.c: derivatives beside the states ---- */
+
+void emit_derivative_declarations(const struct emitter *e);
+void emit_step_derivatives(const struct emitter *e);
+
 void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);

@@ -10,6 +10,10 @@ struct region_part;
 
 /* ---- text.c: what all emitters write with ---- */
 
+struct standing {                   /* what is not in s: C per state, output, input; of an output NULL: not wanted */
+	const char **state, **output, **input, **slope;
+	bool since;                 /* phases and envelopes in s are those of the last refresh */
+};
 struct emitter {
 	FILE *to;
 	const struct step *step;
@@ -34,6 +38,8 @@ struct emitter {
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
+	struct emitter *beside;     /* per block of the step's derivatives: of its model */
+	const struct standing *at;  /* where numbers of derivatives stand; NULL: as they do in s */
 	bool at_state;              /* of a series: what is known beside the state stands in locals */
 	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */
 };

@@ -553,6 +553,16 @@ static void forget_tunables(struct spec *spec)
 	spec->tunables = 0;
 }
 
+/* Which are asked for, and the equations of those that this model has */
+static void take_derivatives(void *context)
+{
+	struct building *b = context;
+	const struct request *request = b->request;
+	if (request->sensitivity && !parse_sensitivities(b->spec, source_argument(request->sensitivity)))
+		abandon();
+	add_derivatives(b->spec, request->again.derivatives_from, request->again.derivatives);
+}
+
 struct model *model_build(struct spec *spec, const struct request *request)
 {
 	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
@@ -563,6 +573,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	for (int i = 0; i < request->definitions.count; i++)
 		define_override(&b, &request->definitions.definition[i]);
 	set_tunables(&b);
+	statement_guard(take_derivatives, &b);
 	if (!request->again.relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
 	name_coordinates(&b);
@@ -581,7 +592,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	if (!diagnostics_errors() && request->explained && spec->energies)
 		silent_guard(find_symmetries, &b);
 	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
-		    request->again.undivided;
+		    request->again.undivided || request->again.derivatives > 0;
 	if (!diagnostics_errors() && !reported)
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !reported && warnings_are_heard())

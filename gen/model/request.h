@@ -19,12 +19,15 @@ struct again {                      /* to build a model a second time, for build
 	const bool *factor;
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
 	bool undivided;             /* regions are those of all coordinates together */
+	/* so many of the spec's derivatives, from the first on, as coordinates behind its own; 0: none */
+	int derivatives_from, derivatives;
 	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
 };
 #define EQUILIBRIA "all equilibria"
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
 	const char *modes;
+	const char *sensitivity;    /* by what derivatives are, in place of the statement's; NULL: it says so */
 	/* which tunable params regions have as numbers, not as inputs; stands on what builds a model. NULL: none */
 	const bool *(*find_factors)(struct building *b);
 	bool reduce;

@@ -208,7 +208,7 @@ static void add_power(struct node *sum, const struct energy *energy, struct plac
 		add_power_of_constraint(sum, energy, at);
 	if (energy->kind == 'Q' || energy->kind == 'G')
 		return;
-	const struct slope by = { at, energy->kind == 'D' ? SLOPE_VELOCITIES : SLOPE_LOADS, NULL };
+	const struct slope by = { .at = at, .kind = energy->kind == 'D' ? SLOPE_VELOCITIES : SLOPE_LOADS };
 	struct node *power = slope_by(energy->value, by);
 	const bool none = is_zero_number(power);
 	if (energy->kind == 'T' && !none)
@@ -254,7 +254,7 @@ static void fill_total(void *context)
 	struct node *value = total->kind == TOTAL_POWER ? total_power(spec, at)
 							: total_energy(spec, total->kind == TOTAL_MOMENTUM, at);
 	if (total->kind == TOTAL_MOMENTUM)
-		value = slope_by(value, (struct slope){ at, SLOPE_VELOCITY, total->coord });
+		value = slope_by(value, (struct slope){ .at = at, .kind = SLOPE_VELOCITY, .of = total->coord });
 	total->let->value = value;
 }
 

@@ -23,12 +23,12 @@ static const struct statement {
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
 	{ "energy", read_energy }, { "dissipation", read_dissipation },
 	{ "constraint", read_constraint }, { "when", read_when }, { "stop", read_stop },
-	{ "range", read_range }, { "draw", read_draw }
+	{ "range", read_range }, { "draw", read_draw }, { "sensitivity", read_sensitivity }
 };
 
-/* tolerance, substeps, modes, use, need, budget, when, stop and range may be names of a spec's own: in an equation
- * an operator or a prime follows; a sign is that of a number where the line has no =; an = is no equation where there
- * is no such name. */
+/* tolerance, substeps, modes, use, need, budget, when, stop, range and sensitivity may be names of a spec's own: in an
+ * equation an operator or a prime follows; a sign is that of a number where the line has no =; an = is no equation
+ * where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;

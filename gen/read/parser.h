@@ -103,6 +103,7 @@ struct mode_list take_modes(struct parser *p);
 void read_modes(struct parser *p);
 void read_operator(struct parser *p);
 void read_tunable(struct parser *p);
+void read_sensitivity(struct parser *p);                    /* of sensitivity.c */
 void read_need(struct parser *p);
 void read_budget(struct parser *p);
 
@@ -152,11 +153,17 @@ struct slope {                      /* a derivative; an error at `at` where it h
 	struct place at;
 	/* in time; in time with the coordinates fixed; by the velocity of the coordinate `of`; by all velocities, each
 	 * times it */
-	enum { SLOPE_TIME, SLOPE_LOADS, SLOPE_VELOCITY, SLOPE_VELOCITIES } kind;
+	enum { SLOPE_TIME, SLOPE_LOADS, SLOPE_VELOCITY, SLOPE_VELOCITIES, SLOPE_PARAM } kind;
 	const struct node *of;
+	/* SLOPE_PARAM: by what, and its name in messages; NULL: a state's initial value, an input */
+	const struct symbol *param;
+	const char *name;
+	struct symbol **moved;      /* per number of a symbol: derivatives of coordinates and inputs; NULL: 0 */
+	struct node **known;        /* likewise of what has a value: the derivative, once found */
 };
 struct node *slope_by(struct node *node, struct slope by);
 struct node *slope_of(struct node *node, struct place at);  /* in time */
+bool is_zero_node(const struct node *node);
 
 /* ---- unobservable.c ---- */
 

@@ -231,6 +231,12 @@ struct tunable {                    /* a param that the target may change */
 	struct symbol *symbol;
 	struct node *low, *high;    /* its range; NULL: it has none */
 };
+struct sensitivity {                /* what derivatives are by: a param, a state's initial value, an input */
+	struct place at;
+	struct symbol *symbol;
+	int component, primes;      /* of a state */
+	const char *name;           /* k, x', q[2] */
+};
 struct assembly_part {                    /* of an assembly: a spec in it, as often as `use` names it */
 	const char *name;           /* front; inside another: half.front */
 	const char *file;           /* as written */
@@ -323,6 +329,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct requested_operators operators;
 	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
 	struct tunable *tunable;
+	int sensitivities;
+	struct sensitivity *sensitivity;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	bool units, adopted;        /* some are written: dimensions are checked, unless they are another spec's */
@@ -349,6 +357,13 @@ void add_energy_elements(struct spec *spec);                /* one for each coor
 void fill_totals(struct spec *spec);                        /* what outputs read of energy, power and momentum */
 bool has_kinetic_energy(const struct spec *spec, int component); /* then the coordinate is of second order */
 bool is_constrained(const struct spec *spec, int component);
+
+/* ---- sensitivity.c: derivatives by params, initial values and along inputs ---- */
+
+bool parse_sensitivities(struct spec *spec, const struct source *source); /* of --sensitivity, instead of the spec's */
+/* To the spec, what so many derivatives follow: coordinates, equations, initial values, outputs behind its own */
+void add_derivatives(struct spec *spec, int first, int count);
+
 /* ---- params.c: other values of params than the spec's ---- */
 
 struct definition {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The derivative of an expression: in time, of a let, f' and f'', and of what an assembly gives to an input of a
- * component which reads the input's slope; by velocities, of energies. Its nodes stand at those of the expression. */
+/* Derivatives of expressions. In time: of a let, f' and f'', and of what an assembly gives to an input of a component
+ * which reads the input's slope; by velocities, of energies; by a param, at fixed time, of an expression whose
+ * coordinates follow the param too. The nodes of a derivative stand at those of its expression. */
 #include "read/parser.h"
 
 static struct node *like(const struct node *node, enum node_kind kind)
@@ -18,7 +19,9 @@ static struct node *number(const struct node *node, long value)
 	return made;
 }
 
-static bool is_zero(const struct node *node)
+static struct node *derivative(struct node *node, const struct slope *by);
+
+bool is_zero_node(const struct node *node)
 {
 	return node->kind == NODE_NUMBER && mpq_sgn(node->number) == 0;
 }
@@ -41,7 +44,7 @@ static struct node *call(const struct node *like_this, enum function function, s
 /* factor * slope, or factor / slope's place with `inverse`; 0 stays 0 */
 static struct node *times(struct node *factor, struct node *slope)
 {
-	if (is_zero(slope))
+	if (is_zero_node(slope))
 		return slope;
 	struct node *product = like(slope, NODE_PRODUCT);
 	product->each = true;
@@ -66,8 +69,6 @@ static struct node *quotient(struct node *above, struct node *below)
 	return made;
 }
 
-static struct node *derivative(struct node *node, const struct slope *by);
-
 /* q' of all velocities, or 1 of one of them: of a vector in its place */
 static struct node *slope_by_velocity(struct node *node, const struct slope *by)
 {
@@ -88,9 +89,65 @@ static struct node *slope_by_velocity(struct node *node, const struct slope *by)
 	return unit;
 }
 
+/* ---- by a param ---- */
+
+/* Whether an expression is made of the param */
+static bool follows(const struct node *node, const struct slope *by)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool found = s && s == by->param;
+	if (s && !found && s->value)
+		found = follows(s->value, by);
+	for (int i = 0; i < node->children && !found; i++)
+		found = follows(node->child[i], by);
+	return found;
+}
+
+static bool is_constant_node(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool constant = node->kind != NODE_TIME && !(s && (s->kind == SYMBOL_COORD || s->kind == SYMBOL_INPUT));
+	if (s && constant && s->value)
+		constant = is_constant_node(s->value);
+	for (int i = 0; i < node->children && constant; i++)
+		constant = is_constant_node(node->child[i]);
+	return constant;
+}
+
+/* A formula changes where this goes through 0: that moves with the param, and there the derivative jumps. */
+static void check_condition(const struct node *node, const struct slope *by)
+{
+	if (by->kind == SLOPE_PARAM && follows(node, by) && !is_constant_node(node))
+		error(node->at, "where a formula changes has to stay where it is",
+		      "no derivative by %s is built here: it moves where the formula changes", by->name);
+}
+
+static struct node *varied_name(struct node *node, const struct slope *by)
+{
+	const struct symbol *symbol = node->symbol;
+	struct node **known = &by->known[symbol->number];
+	if (symbol == by->param)
+		return number(node, 1);
+	if (symbol->value) {
+		*known = *known ? *known : derivative(symbol->value, by);
+		return *known;
+	}
+	if (symbol->delayed && follows(symbol->when, by))
+		error(symbol->at, NULL, "no derivative by %s is built of a delay", by->name);
+	if (!by->moved[symbol->number])
+		return number(node, 0);
+	struct node *made = like(node, NODE_NAME);
+	made->symbol = by->moved[symbol->number];
+	made->component = node->component;
+	made->primes = node->primes;
+	return made;
+}
+
 static struct node *slope_of_name(struct node *node, const struct slope *by)
 {
 	const struct symbol *symbol = node->symbol;
+	if (by->kind == SLOPE_PARAM)
+		return varied_name(node, by);
 	if (symbol->kind == SYMBOL_PARAM || symbol->kind == SYMBOL_MATRIX)
 		return number(node, 0);
 	if (symbol->kind == SYMBOL_LET)
@@ -118,7 +175,7 @@ static struct node *slope_of_sum(const struct node *node, const struct slope *by
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < node->children; i++) {
 		struct node *slope = derivative(node->child[i], by);
-		if (!is_zero(slope))
+		if (!is_zero_node(slope))
 			append(sum, slope, node->inverse[i]);
 	}
 	return sum->children ? sum : number(node, 0);
@@ -130,7 +187,7 @@ static struct node *slope_of_product(struct node *node, const struct slope *by)
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < node->children; i++) {
 		struct node *slope = derivative(node->child[i], by);
-		if (is_zero(slope))
+		if (is_zero_node(slope))
 			continue;
 		struct node *product = like(node, NODE_PRODUCT);
 		product->each = node->each;
@@ -142,20 +199,25 @@ static struct node *slope_of_product(struct node *node, const struct slope *by)
 	return sum->children ? sum : number(node, 0);
 }
 
-/* b^n: n b^(n - 1) b' */
+/* b^n: n b^(n - 1) b', and b^n log(b) n' where a param is in n */
 static struct node *slope_of_power(struct node *node, const struct slope *by)
 {
 	struct node *base = derivative(node->child[0], by), *exponent = node->child[1];
-	if (!is_zero(derivative(exponent, by)))
-		error(by->at, NULL, "this derivative is not found: an exponent depends on time");
-	if (is_zero(base))
-		return base;
-	struct node *less = like(exponent, NODE_SUM), *power = like(node, NODE_POWER);
-	append(less, exponent, false);
-	append(less, number(exponent, 1), true);
-	append(power, node->child[0], false);
-	append(power, less, false);
-	return times(exponent, times(power, base));
+	struct node *moves = derivative(exponent, by), *sum = like(node, NODE_SUM);
+	if (!is_zero_node(moves) && (by->kind != SLOPE_PARAM || !is_constant_node(node)))
+		error(by->at, NULL, "this derivative is not found: an exponent depends on %s",
+		      by->kind == SLOPE_PARAM ? by->name : "time");
+	if (!is_zero_node(moves))
+		append(sum, times(node, times(call(node, FN_LOG, node->child[0]), moves)), false);
+	if (!is_zero_node(base)) {
+		struct node *less = like(exponent, NODE_SUM), *power = like(node, NODE_POWER);
+		append(less, exponent, false);
+		append(less, number(exponent, 1), true);
+		append(power, node->child[0], false);
+		append(power, less, false);
+		append(sum, times(exponent, times(power, base)), false);
+	}
+	return sum->children ? sum : number(node, 0);
 }
 
 /* (a . b)' = a' . b + a . b' */
@@ -164,7 +226,7 @@ static struct node *slope_of_dot(struct node *node, const struct slope *by)
 	struct node *sum = like(node, NODE_SUM);
 	for (int i = 0; i < 2; i++) {
 		struct node *slope = derivative(node->child[i], by);
-		if (is_zero(slope))
+		if (is_zero_node(slope))
 			continue;
 		struct node *product = call(node, FN_DOT, i ? node->child[0] : slope);
 		append(product, i ? slope : node->child[1], false);
@@ -173,12 +235,75 @@ static struct node *slope_of_dot(struct node *node, const struct slope *by)
 	return sum;
 }
 
+/* 1 + sign x^2 */
+static struct node *one_and_square(const struct node *node, struct node *x, bool minus)
+{
+	struct node *sum = like(node, NODE_SUM);
+	append(sum, number(node, 1), false);
+	append(sum, times(x, x), minus);
+	return sum;
+}
+
+/* condition ? a : b, the condition x < y */
+static struct node *chosen(const struct node *node, struct node *x, struct node *y, struct node *a, struct node *b)
+{
+	struct node *less = like(node, NODE_COMPARE), *made = like(node, NODE_CHOOSE);
+	less->comparison = CMP_LT;
+	append(less, x, false);
+	append(less, y, false);
+	append(made, less, false);
+	append(made, a, false);
+	append(made, b, false);
+	return made;
+}
+
+/* Of min and max: that of the one which is taken */
+static struct node *slope_of_extreme(struct node *node, const struct slope *by)
+{
+	struct node *best = node->child[0], *slope = derivative(best, by);
+	for (int i = 1; i < node->children; i++) {
+		struct node *x = node->child[i], *y = best, *own = derivative(x, by);
+		bool least = node->function == FN_MIN;
+		slope = chosen(node, least ? x : y, least ? y : x, own, slope);
+		best = chosen(node, least ? x : y, least ? y : x, x, y);
+	}
+	return slope;
+}
+
+/* deadzone(x, lo, hi), clip(x, lo, hi) */
+static struct node *slope_of_clipped(struct node *node, const struct slope *by)
+{
+	struct node *x = node->child[0], *lo = node->child[1], *hi = node->child[2];
+	struct node *inner = derivative(x, by), *below = derivative(lo, by), *above = derivative(hi, by);
+	if (node->function == FN_DEADZONE) {
+		struct node *from_lo = like(node, NODE_SUM), *from_hi = like(node, NODE_SUM);
+		append(from_lo, inner, false);
+		append(from_lo, below, true);
+		append(from_hi, inner, false);
+		append(from_hi, above, true);
+		return chosen(node, x, lo, from_lo, chosen(node, hi, x, from_hi, number(node, 0)));
+	}
+	return chosen(node, x, lo, below, chosen(node, hi, x, above, inner));
+}
+
+/* (y' x - x' y)/(x^2 + y^2) */
+static struct node *slope_of_angle(struct node *node, const struct slope *by)
+{
+	struct node *y = node->child[0], *x = node->child[1];
+	struct node *sum = like(node, NODE_SUM), *square = like(node, NODE_SUM);
+	append(sum, times(x, derivative(y, by)), false);
+	append(sum, times(y, derivative(x, by)), true);
+	append(square, times(x, x), false);
+	append(square, times(y, y), false);
+	return quotient(sum, square);
+}
+
 static struct node *slope_of_call(struct node *node, const struct slope *by)
 {
-	struct node *x = node->child[0], *inner = derivative(x, by);
+	struct node *x = node->child[0], *inner = derivative(x, by), *root;
 	bool constant = true;
 	for (int i = 0; i < node->children; i++)
-		constant = constant && is_zero(derivative(node->child[i], by));
+		constant = constant && is_zero_node(derivative(node->child[i], by));
 	if (constant)
 		return number(node, 0);
 	switch (node->function) {
@@ -187,33 +312,61 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_DOT:  return slope_of_dot(node, by);
 	case FN_SIN:  return times(call(node, FN_COS, x), inner);
 	case FN_COS:  return negative(times(call(node, FN_SIN, x), inner));
+	case FN_TAN:  return times(one_and_square(node, node, false), inner);
 	case FN_SINH: return times(call(node, FN_COSH, x), inner);
 	case FN_COSH: return times(call(node, FN_SINH, x), inner);
+	case FN_TANH: return times(one_and_square(node, node, true), inner);
 	case FN_EXP:  return times(node, inner);
 	case FN_LOG:  return quotient(inner, x);
 	case FN_SQRT: return quotient(inner, times(number(node, 2), node));
+	case FN_ASIN:
+	case FN_ACOS:
+		root = call(node, FN_SQRT, one_and_square(node, x, true));
+		return node->function == FN_ASIN ? quotient(inner, root) : negative(quotient(inner, root));
+	case FN_ATAN: return quotient(inner, one_and_square(node, x, false));
+	case FN_ATAN2: return slope_of_angle(node, by);
 	case FN_ABS:  return times(call(node, FN_SGN, x), inner);
+	case FN_SGN:
+		check_condition(node, by);
+		return number(node, 0);
+	case FN_MIN:
+	case FN_MAX:  return slope_of_extreme(node, by);
+	case FN_DEADZONE:
+	case FN_CLIP: return slope_of_clipped(node, by);
 	default:
-		error(by->at, "found are those of sums, products, powers, sin, cos, exp, log, sqrt, sinh, cosh, abs",
-		      "this derivative would hold that of %s, which is not found", function_name(node->function));
+		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL, "this derivative would hold that of %s, which is not found",
+		      function_name(node->function));
 	}
 }
 
-static struct node *slope_of_matrix(const struct node *node, const struct slope *by)
+static struct node *slope_of_matrix(struct node *node, const struct slope *by)
 {
-	struct node *matrix = like(node, NODE_MATRIX);
-	bool constant = true;
-	matrix->columns = node->columns;
+	struct node *made = like(node, NODE_MATRIX);
+	bool any = false;
+	made->columns = node->columns;
 	for (int i = 0; i < node->children; i++) {
-		append(matrix, derivative(node->child[i], by), false);
-		constant = constant && is_zero(matrix->child[i]);
+		struct node *slope = derivative(node->child[i], by);
+		any = any || !is_zero_node(slope);
+		append(made, slope, false);
 	}
-	return constant ? number(node, 0) : matrix;
+	return any ? made : number(node, 0);
+}
+
+static struct node *slope_of_choice(struct node *node, const struct slope *by)
+{
+	struct node *first = derivative(node->child[1], by), *second = derivative(node->child[2], by);
+	check_condition(node->child[0], by);
+	if (is_zero_node(first) && is_zero_node(second))
+		return first;
+	struct node *choice = like(node, NODE_CHOOSE);
+	append(choice, node->child[0], false);
+	append(choice, first, false);
+	append(choice, second, false);
+	return choice;
 }
 
 static struct node *derivative(struct node *node, const struct slope *by)
 {
-	struct node *choice;
 	switch (node->kind) {
 	case NODE_NUMBER:
 	case NODE_PI:      return number(node, 0);
@@ -223,15 +376,13 @@ static struct node *derivative(struct node *node, const struct slope *by)
 	case NODE_PRODUCT: return slope_of_product(node, by);
 	case NODE_POWER:   return slope_of_power(node, by);
 	case NODE_CALL:    return slope_of_call(node, by);
+	case NODE_CHOOSE:  return slope_of_choice(node, by);
 	case NODE_MATRIX:  return slope_of_matrix(node, by);
-	case NODE_CHOOSE:
-		choice = like(node, NODE_CHOOSE);
-		append(choice, node->child[0], false);
-		append(choice, derivative(node->child[1], by), false);
-		append(choice, derivative(node->child[2], by), false);
-		return choice;
 	default:
-		error(by->at, NULL, "this derivative is not found");
+		if (by->kind != SLOPE_PARAM)
+			error(by->at, NULL, "this derivative is not found");
+		check_condition(node, by);       /* a comparison, or a matrix in a file */
+		return number(node, 0);
 	}
 }
 

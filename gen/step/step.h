@@ -23,6 +23,7 @@ struct forced;
 struct modal;
 struct normal;
 struct denormal_flush;
+struct derivatives;
 struct rows;
 struct tuned_blocks;
 
@@ -99,6 +100,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct event_split *event_split; /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct normal *normal;      /* of a step in normal modes; else NULL */
+	struct derivatives *derivatives; /* by params and the like; NULL: none are asked for */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 };
 struct descriptor descriptor_of(const struct model *model);
@@ -115,6 +117,25 @@ bool *loads_of_regions(const struct step *step);
 struct facts facts_of_step(const struct step *step);
 const char *step_objection(const struct step *step, enum capability requested); /* NULL: nothing does */
 bool has_remainder(const struct step *step);
+
+/* ---- derivatives.c: derivatives by params, initial values and along inputs ---- */
+
+/* Some columns, whose model has the coordinates of the model itself first, then those of each column; so its outputs */
+struct derivative_block {
+	int first, columns;
+	const struct step *step;
+};
+struct derivatives {
+	int columns;
+	const struct sensitivity *column;
+	bool seeded;                /* some are along inputs */
+	int blocks;
+	struct derivative_block *block;
+};
+/* step->derivatives, where the spec or the request asks for some; false: it was said why there are none */
+bool find_derivatives(struct step *step);
+int  load_alike(const struct linear *system, const struct load *load); /* of the same time function; NONE: none */
+bool derivatives_read_load(const struct step *step, int load);
 
 /* ---- scheme.c: the step of a model ---- */
 

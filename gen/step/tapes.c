@@ -150,7 +150,8 @@ static void name_assigned(const struct sums *s, int state)
 			  format("%s%d", state < system->n ? "drifted" : "kicked", system->coord[state] + 1));
 }
 
-void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector)
+void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector,
+		  const char *const *place)
 {
 	enum { INDENT = 14 };
 	const struct program *program = step->program;
@@ -170,7 +171,8 @@ void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, 
 	}
 	for (int i = 0; i < states; i++)
 		if (s.assigned[i])
-			tape_set(t, format("%s[%d]", vector, i), to[i], INDENT, step->model->names.state[i]);
+			tape_set(t, place ? place[i] : format("%s[%d]", vector, i), to[i], INDENT,
+				 step->model->names.state[i]);
 }
 
 /* ---- rows of outputs ---- */

@@ -34,8 +34,9 @@ void tape_of_forced(struct tape *t, const struct step *step, const char *vector)
 bool rows_sustained(const struct step *step);
 /* Per segment of time, what a row of outputs takes of a load state, by itself and so */
 const mpq_t *direct_factors(const struct step *step, const struct output *output, int load, int column);
-/* Sets vector[i] to state i after a step, of those that are stepped; NULL: all */
-void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector);
+/* Sets vector[i], or its place, to state i after a step, of those that are stepped; NULL: all */
+void tape_of_step(struct tape *t, const struct step *step, const bool *stepped, const char *vector,
+		  const char *const *place);
 bool has_second_word(const struct product *p, const struct step *step);
 tape_ref tape_of_row(struct tape *t, const struct step *step, const struct output *output); /* not the remainder */
 int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */

@@ -37,7 +37,7 @@ static double *widened(const float *value, int count)
 	(m)->size = (d)->size; \
 	(m)->states = (d)->states; \
 	(m)->inputs = (d)->inputs; \
-	(m)->outputs = (m)->own_outputs = (d)->outputs; \
+	(m)->outputs = (m)->plain_outputs = (m)->own_outputs = (d)->outputs; \
 	(m)->params = (d)->params; \
 	(m)->h = (double)(d)->h; \
 	(m)->input_names = (d)->input_names; \
@@ -61,6 +61,28 @@ static void fill(struct machine *m)
 	for (int i = 0; i < m->inputs; i++)
 		if (m->ahead[i] > m->most_ahead)
 			m->most_ahead = m->ahead[i];
+}
+
+static void *find(const struct machine *m, const char *name, const char *what)
+{
+	char *symbol = format("%s_%s", name, what);
+	void *found = dlsym(m->object, symbol);
+	free(symbol);
+	return found;
+}
+
+/* Behind the outputs the derivatives of each: dx/dk, dx/dc, dv/dk, dv/dc */
+static void name_derivatives(struct machine *m)
+{
+	const int columns = m->single ? m->derivativesf->columns : m->derivatives->columns, plain = m->plain_outputs;
+	const char *const *by = m->single ? m->derivativesf->names : m->derivatives->names;
+	const char **name = need(calloc((size_t)(plain * (1 + columns)) + 1, sizeof *name));
+	for (int i = 0; i < plain; i++)
+		name[i] = m->output_names[i];
+	for (int i = 0; i < plain * columns; i++)
+		name[plain + i] = format("d%s/d%s", m->output_names[i / columns], by[i % columns]);
+	m->output_names = name;
+	m->outputs = m->own_outputs = plain * (1 + columns);
 }
 
 /* Whether an instance takes another step; what reads tunable params alone has one step, and refuses */
@@ -90,22 +112,20 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 		machine_close(m);
 		return NULL;
 	}
-	symbol = format("%s_allowed", name);
-	void *allowed = dlsym(m->object, symbol);
+	void *allowed = find(m, name, "allowed");
 	memcpy(&m->allowed, &allowed, sizeof allowed);
 	memcpy(&m->allowedf, &allowed, sizeof allowed);
-	free(symbol);
-	symbol = format("%s_crossed", name);
-	void *crossed = dlsym(m->object, symbol);
+	void *crossed = find(m, name, "crossed");
 	memcpy(&m->crossed, &crossed, sizeof crossed);
-	free(symbol);
-	symbol = format("%s_units", name);
-	m->units = dlsym(m->object, symbol);
-	free(symbol);
+	m->units = find(m, name, "units");
+	m->derivatives = find(m, name, "derivatives");
+	m->derivativesf = (const void *)m->derivatives;
 	m->single = ((const struct head *)descriptor)->real_size == (int)sizeof(float);
 	m->model = descriptor;
 	m->modelf = descriptor;
 	fill(m);
+	if (m->derivatives)
+		name_derivatives(m);
 	m->can_retune = takes_steps(m);
 	return m;
 }
@@ -151,6 +171,26 @@ double param_value(const struct machine *m, int param, double value)
 
 /* ---- an instance ---- */
 
+static void begin_derivatives(struct instance *i)
+{
+	const struct machine *m = i->machine;
+	i->derivatives = need(calloc(1, m->single ? m->derivativesf->size : m->derivatives->size));
+	i->seed = need(calloc((size_t)m->inputs + 1, sizeof *i->seed));
+	for (int k = 0; k < m->inputs; k++)
+		if (m->single)
+			((float *)i->seed)[k] = 1;
+		else
+			i->seed[k] = 1;
+	if (m->single)
+		m->derivativesf->init(i->state, i->derivatives);
+	else
+		m->derivatives->init(i->state, i->derivatives);
+	if (m->single && m->derivativesf->hold)
+		m->derivativesf->hold(i->derivatives, (const float *)i->seed);
+	if (!m->single && m->derivatives->hold)
+		m->derivatives->hold(i->derivatives, i->seed);
+}
+
 struct instance *instance_new(const struct machine *m)
 {
 	struct instance *i = need(calloc(1, sizeof *i));
@@ -161,7 +201,9 @@ struct instance *instance_new(const struct machine *m)
 	i->all = need(calloc((size_t)(m->own_outputs + m->states) + 1, sizeof *i->all));
 	if (m->single)
 		i->narrow = need(calloc((size_t)(most > m->params ? most : m->params) + 1, sizeof(float)));
-	if (m->single)
+	if (m->derivatives)
+		begin_derivatives(i);
+	else if (m->single)
 		m->modelf->init(i->state);
 	else
 		m->model->init(i->state);
@@ -171,6 +213,8 @@ struct instance *instance_new(const struct machine *m)
 void instance_free(struct instance *i)
 {
 	free(i->state);
+	free(i->derivatives);
+	free(i->seed);
 	free(i->narrow);
 	free(i->all);
 	free(i);
@@ -210,8 +254,13 @@ void instance_hold(struct instance *i, const double *u)
 void instance_step(struct instance *i, const double *u)
 {
 	const struct machine *m = i->machine;
-	if (m->single)
-		m->modelf->step(i->state, m->inputs ? narrowed(i, u, m->inputs) : NULL);
+	const float *narrow = m->single && m->inputs ? narrowed(i, u, m->inputs) : NULL;
+	if (m->derivatives && m->single)
+		m->derivativesf->step(i->state, i->derivatives, narrow, (const float *)i->seed);
+	else if (m->derivatives)
+		m->derivatives->step(i->state, i->derivatives, m->inputs ? u : NULL, i->seed);
+	else if (m->single)
+		m->modelf->step(i->state, narrow);
 	else
 		m->model->step(i->state, m->inputs ? u : NULL);
 }
@@ -221,9 +270,13 @@ static void own_out(struct instance *i, double *out)
 	const struct machine *m = i->machine;
 	if (!m->single) {
 		m->model->out(i->state, out);
+		if (m->derivatives)
+			m->derivatives->out(i->state, i->derivatives, out + m->plain_outputs);
 		return;
 	}
 	m->modelf->out(i->state, i->narrow);
+	if (m->derivatives)
+		m->derivativesf->out(i->state, i->derivatives, i->narrow + m->plain_outputs);
 	for (int k = 0; k < m->own_outputs; k++)
 		out[k] = (double)i->narrow[k];
 }

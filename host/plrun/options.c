@@ -188,7 +188,8 @@ static const struct row {
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
 	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL }, { "params", "FILE", NULL, NULL },
-	{ "refresh", "N", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
+	{ "refresh", "N", NULL, NULL },
+	{ "sensitivity", "LIST", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
 	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
 };
 enum { ROWS = sizeof rows / sizeof *rows };

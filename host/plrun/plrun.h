@@ -217,9 +217,11 @@ struct machine {
 	/* NAME_allowed, of its type; NULL: steps do not look at their error */
 	void (*allowed)(const void *s, double *y);
 	void (*allowedf)(const void *s, float *y);
+	const pl_derivatives *derivatives;      /* NULL: it has none; of a model in float its pl_derivativesf */
+	const pl_derivativesf *derivativesf;
 	const char *name;
 	int states, inputs, outputs, params;    /* outputs: those that are shown */
-	int own_outputs;                        /* of the model */
+	int plain_outputs, own_outputs;         /* of the model; with their derivatives behind them */
 	const int *shown;                       /* per output: its own, or behind them a state; NULL: all of its own */
 	size_t size;
 	double h;
@@ -259,6 +261,8 @@ double panel_height(const struct view *v, const struct panel *p, bool labelled);
 struct instance {
 	const struct machine *machine;
 	void *state;
+	void *derivatives;                      /* NULL: there are none */
+	double *seed;                           /* by an input: the derivatives are by an offset of it */
 	float *narrow;                          /* of models in float: room for any vector */
 	double *all;                            /* where a choice is shown: outputs, then states */
 };

@@ -78,8 +78,9 @@ static _Noreturn void wrong_at(const struct list *l, const char *at, const char 
 
 static const char *unit_of(const struct machine *m, int source)
 {
-	const char *const *list = !m->units ? NULL : source < m->own_outputs ? m->units->output : m->units->state;
-	return list ? list[source < m->own_outputs ? source : source - m->own_outputs] : "";
+	const bool output = source < m->plain_outputs, state = source >= m->own_outputs;
+	const char *const *list = !m->units ? NULL : output ? m->units->output : state ? m->units->state : NULL;
+	return list ? list[output ? source : source - m->own_outputs] : "";
 }
 
 static const char *labelled(const char *name, const char *unit)

@@ -36,7 +36,7 @@ _plgen() {
         -o | --depfile | --params | --input | --sweep | --a2l | --fmu)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
-            --column | --time | --title | --size | -D) return ;;
+            --sensitivity | --column | --time | --title | --size | -D) return ;;
     esac
     case $current in
         -*)

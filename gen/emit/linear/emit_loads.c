@@ -238,7 +238,7 @@ static const char *now_of(const struct emitter *e, const char *what, const char 
 		return format("%s_add(%s, %s_node_%s[node][%d])", type, kept, e->name, what, i);
 	if (e->after)
 		return later(e, what, type, i);
-	if (!e->step->refresh || e->at_refresh)
+	if ((!e->step->refresh && !(e->at && e->at->since)) || e->at_refresh)
 		return kept;
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
 }

@@ -96,7 +96,7 @@ static const char **acting_texts(const struct emitter *e)
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped)
 {
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, 0, NULL);
-	tape_of_step(formulas_tape(f), e->step, stepped, "s->y");
+	tape_of_step(formulas_tape(f), e->step, stepped, "s->y", e->at ? e->at->state : NULL);
 	return f;
 }
 

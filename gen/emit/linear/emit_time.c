@@ -37,7 +37,7 @@ static void emit_held(const struct emitter *e)
 }
 
 /* x[...] = the load states, from index[l] on */
-static void store_loads(const struct emitter *e, const int *index, const char *member)
+void store_loads(const struct emitter *e, const int *index, const char *member)
 {
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && index[l] >= 0; k++) {
@@ -46,7 +46,7 @@ static void store_loads(const struct emitter *e, const int *index, const char *m
 		}
 }
 
-static bool *wanted_loads(const struct emitter *e, const int *index)
+bool *wanted_loads(const struct emitter *e, const int *index)
 {
 	bool *wanted = ARRAY(bool, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++)
@@ -75,17 +75,20 @@ static void store_derivatives(const struct emitter *e, int input, int at)
 	}
 }
 
-static void store_inputs(const struct emitter *e, const int *index)
+void store_inputs(const struct emitter *e, const int *index)
 {
-	for (int i = 0; i < e->system->inputs; i++) {
+	for (int i = 0, column = 0; i < e->system->inputs; column += e->system->input[i++].hold + 1) {
 		bool ramp = e->system->input[i].hold;
 		if (e->system->input[i].hold > 1) {
 			store_derivatives(e, i, index[i]);
 			continue;
 		}
-		say(e, "    x[%d] = %s[%d];\n", index[i], ramp ? "s->u" : "u", i);
+		say(e, "    x[%d] = %s;\n", index[i],
+		    e->sample ? e->sample[column] : format("%s[%d]", ramp ? "s->u" : "u", i));
 		if (ramp)
-			say(e, "    x[%d] = %s;\n", index[i] + 1, ramp_slope(e, i));
+			say(e, "    x[%d] = %s;\n", index[i] + 1,
+			    e->sample ? slope_of_samples(e, e->sample[column + 1], e->sample[column])
+				      : ramp_slope(e, i));
 	}
 }
 

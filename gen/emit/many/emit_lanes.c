@@ -84,7 +84,7 @@ struct batch plan_batch(const struct emitter *e)
 	struct batch b = { .e = e, .forced = -1, .step = tape_new(), .out = tape_new() };
 	struct step now = *e->step;             /* what instances share are load states of now, not a refresh's */
 	now.refresh = NULL;
-	tape_of_step(b.step, &now, NULL, "y");
+	tape_of_step(b.step, &now, NULL, "y", NULL);
 	for (int i = 0; i < e->model->outputs; i++) {
 		const struct output *output = &e->model->output[i];
 		tape_set(b.out, format("out[%d]", i), tape_of_row(b.out, e->step, output), 13, output->name);

@@ -397,7 +397,8 @@ void plan_forced(struct step *step)
 	struct linear *system = &step->branch->system;
 	struct course course;
 	bool any = false, *able = ARRAY(bool, system->loads);
-	if (!any_load_acts(system) || system->heldK || !make_course(step, &course))
+	if (!any_load_acts(system) || system->heldK || step->model->request.again.derivatives > 0 ||
+	    !make_course(step, &course))
 		return;
 	step->rounding = bound_of(step, &course, NULL);
 	if (!step->rounding.known || step->rounding.relative <= much || step->model->params.tuning)

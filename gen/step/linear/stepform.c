@@ -285,7 +285,7 @@ void find_carries(struct step *step)
 	step->carried.count = 0;
 	for (int i = 0; i < n; i++)
 		step->carried.place[i] = -1;
-	if (step->is.two_words || step->branch->system.heldK)
+	if (step->is.two_words || step->branch->system.heldK || step->model->request.again.derivatives)
 		return;
 	bool *reads = readings(step), *elsewhere = read_elsewhere(step);
 	for (int k = 0; k < n && listed; k++)
@@ -353,7 +353,7 @@ static void count(struct program *program, const struct step *step)
 	struct step view = *step;
 	struct tape *t = tape_new();
 	view.program = program;
-	tape_of_step(t, &view, NULL, "");
+	tape_of_step(t, &view, NULL, "", NULL);
 	struct tape_cost cost = tape_cost(t);
 	program->multiplications = cost.multiplications;
 	program->additions = cost.additions + PL_ACCUMULATE_ADD * cost.accumulations;

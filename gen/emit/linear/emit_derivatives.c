@@ -1,0 +1,342 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives of steps, outputs and values between steps: of each block of columns the rows of its model, whose states
+ * stand in y and in ds. */
+#include "inner.h"
+#include "emit/declarations.h"
+#include "emit/state.h"
+#include "emit/steps.h"
+#include "model/reads.h"
+#include "step/linear/forms.h"
+
+#include <string.h>
+
+/* ---- what they are called ---- */
+
+/* Of a state its initial value, x(0) */
+static const char *column_name(const struct sensitivity *s)
+{
+	return s->symbol->kind == SYMBOL_COORD ? format("%s(0)", s->name) : s->name;
+}
+
+/* In an enum: the initial value of x as X0 */
+static const char *index_name(const struct sensitivity *s)
+{
+	const char *name = s->component ? format("%s %d", s->symbol->name, s->component) : s->symbol->name;
+	return s->symbol->kind == SYMBOL_COORD ? format("%s%s0", name, s->primes ? "_dot" : "") : name;
+}
+
+static const char *column_list(const struct derivatives *d)
+{
+	const char *list = "";
+	for (int i = 0; i < d->columns; i++)
+		list = format("%s%s%s", list, i ? ", " : "", column_name(&d->column[i]));
+	return list;
+}
+
+/* In calls, and where they are declared */
+static const char *input_arguments(const struct emitter *e)
+{
+	return !given_inputs(e) ? "" : e->step->derivatives->seeded ? ", u, du" : ", u";
+}
+
+static const char *unread_inputs(const struct emitter *e)
+{
+	return !given_inputs(e) ? "" : e->step->derivatives->seeded ? " u du" : " u";
+}
+
+static const char *input_parameters(const struct emitter *e)
+{
+	const char *u = given_inputs(e) ? format(", const double u[%s_INPUTS]", e->upper) : "";
+	return e->step->derivatives->seeded ? format("%s, const double du[%s_INPUTS]", u, e->upper) : u;
+}
+
+static bool has_values_between(const struct emitter *e)
+{
+	bool has = e->step->series.emitted;
+	for (int b = 0; b < e->step->derivatives->blocks; b++)
+		has = has && e->step->derivatives->block[b].step->series.emitted;
+	return has;
+}
+
+/* ---- the header ---- */
+
+void emit_derivative_declarations(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const char **name = ARRAY(const char *, (size_t)d->columns);
+	for (int i = 0; i < d->columns; i++)
+		name[i] = index_name(&d->column[i]);
+	open_declarations(e, format("%s_D", e->upper), "");
+	const char *words = "Derivatives by %s, a column each; by an input: along the change du of its samples.  s is "
+			    "left by $n_step_d as it is by $n_step.";
+	say_comment(e, "", spell(e, words, column_list(d)));
+	say(e, "enum { $N_D = %d };\n", d->columns);
+	emit_names_of(e, "D", name, d->columns);
+	say(e, "typedef struct $n_d $n_d;\n"
+	       "struct $n_d {\n"
+	       "    double s[$N_D][$N_STATES];  /* column by column: of %s */\n", state_list(e->step->shown->model));
+	if (d->seeded)
+		say(e, "    double du[$N_INPUTS];       /* of the last sample */\n");
+	if (d->seeded && e->ramps)
+		say(e, "    double slope[$N_INPUTS];    /* of that [1/s] */\n");
+	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
+	       "};\n");
+	announce(e, spell(e, "void   $n_init_d($n *s, $n_d *ds);"),
+		 spell(e, "as $n_init, and the derivatives of that state"));
+	announce(e, spell(e, "void   $n_set_d($n_d *ds, double S[$N_D][$N_STATES]);"), "any; NULL: 0");
+	announce(e, spell(e, "void   $n_get_d(const $n *s, const $n_d *ds, double S[$N_D][$N_STATES]);"), "");
+	if (d->seeded && e->ramps)
+		announce(e, spell(e, "void   $n_hold_d($n_d *ds, const double du[$N_INPUTS]);"),
+			 spell(e, "as $n_hold, of du"));
+	announce(e, spell(e, "void   $n_step_d($n *s, $n_d *ds%s);", input_parameters(e)), "one step of both");
+	announce(e, spell(e, "void   $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D]);"), "");
+	if (has_values_between(e))
+		announce(e, spell(e, "void   $n_at_d(const $n *s, const $n_d *ds%s, double tau, "
+				     "double S[$N_D][$N_STATES]);", input_parameters(e)), "");
+	announce(e, spell(e, "void   $n_run_d($n *s, $n_d *ds, size_t n%s%s, double *out, double *J);",
+			  given_inputs(e) ? ", const double *u" : "", d->seeded ? ", const double *du" : ""),
+		 "out, J: n rows, or NULL");
+	say(e, "extern const pl_derivatives $n_derivatives;\n");
+	close_declarations(e);
+}
+
+/* ---- a block's model as an emitter of its own, whose numbers stand elsewhere ---- */
+
+/* Of a state of the block: the column that it is of, from 0; NONE: it is a state itself. *state: which */
+static int column_of(const struct model *written, const struct derivative_block *block, int place, int *state)
+{
+	const struct model *model = block->step->model;
+	const int coord = model->system.coord[place], own = coord % written->n;
+	*state = place >= model->n ? written->system.velocity[own] : own;
+	return coord < written->n ? NONE : block->first + coord / written->n - 1;
+}
+
+static const char **places_of_states(const struct model *written, const struct derivative_block *block)
+{
+	const int states = block->step->model->system.states;
+	const char **place = ARRAY(const char *, (size_t)states);
+	for (int i = 0; i < states; i++) {
+		int state, column = column_of(written, block, i, &state);
+		place[i] = column == NONE ? format("y[%d]", state) : format("ds->s[%d][%d]", column, state);
+	}
+	return place;
+}
+
+static const char **places_of_outputs(const struct model *written, const struct derivative_block *block)
+{
+	const int own = written->outputs;
+	const char **place = ARRAY(const char *, (size_t)block->step->model->outputs + 1);
+	for (int i = own; i < own * (1 + block->columns); i++)
+		place[i] = format("J[%d][%d]", i % own, block->first + i / own - 1);
+	return place;
+}
+
+/* Seeds stand behind the inputs, in the order of the columns. */
+static int input_of_seed(const struct emitter *e, const struct derivative_block *block, int input)
+{
+	int seed = given_inputs(e), i = block->first;
+	for (; i < block->first + block->columns; i++)
+		if (e->step->derivatives->column[i].symbol->kind == SYMBOL_INPUT && seed++ == input)
+			return e->step->derivatives->column[i].symbol->index;
+	return NONE;
+}
+
+static const char *sample_of(const struct emitter *e, const struct derivative_block *block, int input, int sample)
+{
+	const int hold = block->step->model->system.input[input].hold, seed = input_of_seed(e, block, input);
+	if (seed == NONE)
+		return sample_text(e, input, sample);
+	return format(sample == hold ? "(du == NULL ? 0.0 : du[%d])" : "ds->du[%d]", seed);
+}
+
+static const char **samples_of(const struct emitter *e, const struct derivative_block *block)
+{
+	const struct linear *system = &block->step->model->system;
+	const char **text = ARRAY(const char *, (size_t)input_columns(system) + 1);
+	for (int i = 0, column = 0; i < system->inputs; i++)
+		for (int c = 0; c <= system->input[i].hold; c++)
+			text[column++] = sample_of(e, block, i, c);
+	return text;
+}
+
+static struct emitter emitter_of_block(const struct emitter *e, const struct derivative_block *block)
+{
+	struct emitter b = e->beside[block - e->step->derivatives->block];
+	for (int l = 0; l < b.system->loads; l++) {
+		const int own = load_alike(e->system, &b.system->load[l]);
+		b.phase[l] = own == NONE ? NONE : e->phase[own];
+		b.growth[l] = own == NONE ? NONE : e->growth[own];
+	}
+	struct standing *at = NEW(struct standing);
+	at->state = places_of_states(e->step->model->written, block);
+	at->output = places_of_outputs(e->step->model->written, block);
+	at->input = ARRAY(const char *, (size_t)b.system->inputs + 1);
+	at->slope = ARRAY(const char *, (size_t)b.system->inputs + 1);
+	for (int i = 0; i < b.system->inputs; i++) {
+		const int seed = input_of_seed(e, block, i), input = seed == NONE ? i : seed;
+		at->input[i] = format(seed == NONE ? "s->u[%d]" : "ds->du[%d]", input);
+		at->slope[i] = format(seed == NONE ? "s->slope[%d]" : "ds->slope[%d]", input);
+	}
+	at->since = e->step->refresh != NULL;
+	b.at = at;
+	b.sample = samples_of(e, block);
+	return b;
+}
+
+/* ---- the functions of a block ---- */
+
+static void emit_block_step(const struct emitter *e, const struct derivative_block *block, int number)
+{
+	const struct emitter made = emitter_of_block(e, block), *b = &made;
+	const int states = b->system->states;
+	bool *stepped = ARRAY(bool, (size_t)states), *reads = ARRAY(bool, (size_t)states);
+	for (int i = 0; i < states; i++)
+		stepped[i] = b->system->coord[i] >= e->step->model->written->n;
+	struct formulas *f = formulas_of_step(b, stepped);
+	tape_mark(formulas_tape(f), TAPE_STATE, 0, reads);
+	const struct reads r = reads_of_formulas(f);
+	open_function(e, NULL, "static void $n_step_d%d(const $n *s, const double y[$N_STATES], $n_d *ds%s)", number,
+		      input_parameters(e));
+	emit_raw_locals(b, reads);
+	if (r.time)
+		say(e, "    const double t = $n_time(s);\n");
+	emit_load_states(b, r.load, r.time);
+	emit_formulas(f, 4);
+	close_function(e, format("s y%s", unread_inputs(e)));
+}
+
+static void emit_block_outputs(const struct emitter *e, const struct derivative_block *block, int number)
+{
+	const struct emitter b = emitter_of_block(e, block);
+	open_function(e, NULL, "static void $n_out_d%d(const $n *s, const double y[$N_STATES], const $n_d *ds, "
+		      "double J[$N_OUTPUTS][$N_D])", number);
+	emit_outputs_now(&b);
+	close_function(e, "s y ds");
+}
+
+/* By the Taylor series of the block's model, as the model's own */
+static void emit_block_at(const struct emitter *e, const struct derivative_block *block, int number)
+{
+	const struct emitter made = emitter_of_block(e, block), *b = &made;
+	const struct layout *x = &b->step->layout;
+	const struct series *series = &b->step->series;
+	const int size[] = { x->size, x->size };
+	emit_array(e, "A of x' = A x; x: the states and their derivatives, then load states and inputs",
+		   format("d%d_slope", number), 2, size, slopes_of(b->step, 0), NULL);
+	open_function(e, NULL, "static void $n_at_d%d(const $n *s, const double y[$N_STATES], const $n_d *ds%s, "
+			       "double tau, double S[$N_D][$N_STATES])", number, input_parameters(e));
+	say(e, "    static const pl_series series = {%d, %d, %d, %d, $n_d%d_slope[0]};"
+	       "  /* size, states, degree, halvings */\n"
+	       "    double work[%d];\n"
+	       "    double x[%d];\n", x->size, b->system->states, series->degree, series->halvings, number,
+	    2 * x->size, x->size);
+	emit_load_states(b, wanted_loads(b, x->load), false);
+	for (int i = 0; i < b->system->states; i++)
+		say(e, "    x[%d] = %s;\n", i, b->at->state[i]);
+	store_loads(b, x->load, "");
+	store_inputs(b, x->input);
+	say(e, "    pl_series_advance(&series, tau, x, work);\n");
+	for (int i = 0; i < b->system->states; i++)
+		if (b->system->coord[i] >= e->step->model->written->n)
+			say(e, "    S%s = x[%d];\n", b->at->state[i] + strlen("ds->s"), i);
+	close_function(e, format("s y%s", unread_inputs(e)));
+}
+
+/* ---- the functions of the model ---- */
+
+/* y: the states as written */
+static void emit_state_now(const struct emitter *e)
+{
+	say(e, "    double y[$N_STATES];\n"
+	       "    $n_get(s, y);\n");
+}
+
+static void emit_keep_seeds(const struct emitter *e)
+{
+	for (int i = 0; i < given_inputs(e) && e->step->derivatives->seeded; i++) {
+		const char *now = format("(du == NULL ? 0.0 : du[%d])", i);
+		if (e->ramps)
+			say(e, "    ds->slope[%d] = %s;\n", i, slope_of_samples(e, now, format("ds->du[%d]", i)));
+		say(e, "    ds->du[%d] = %s;\n", i, now);
+	}
+}
+
+static void emit_step_of_all(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
+	emit_state_now(e);
+	for (int b = 0; b < d->blocks; b++)
+		say(e, "    $n_step_d%d(s, y, ds%s);\n", b, input_arguments(e));
+	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
+	emit_keep_seeds(e);
+	close_function(e, "");
+}
+
+static void emit_at_of_all(const struct emitter *e)
+{
+	open_function(e, NULL, "void $n_at_d(const $n *s, const $n_d *ds%s, double tau, double S[$N_D][$N_STATES])",
+		      input_parameters(e));
+	emit_state_now(e);
+	for (int b = 0; b < e->step->derivatives->blocks; b++)
+		say(e, "    $n_at_d%d(s, y, ds%s, tau, S);\n", b, input_arguments(e));
+	close_function(e, "");
+}
+
+static void emit_outputs_of_all(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	open_function(e, NULL, "void $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])");
+	if (e->model->declared_outputs) {
+		emit_state_now(e);
+		for (int b = 0; b < d->blocks; b++)
+			say(e, "    $n_out_d%d(s, y, ds, J);\n", b);
+	} else {
+		say(e, "    int i, p;\n"
+		       "    for (i = 0; i < $N_OUTPUTS; i++) {\n"
+		       "        for (p = 0; p < $N_D; p++) { J[i][p] = ds->s[p][i]; }\n"
+		       "    }\n");
+	}
+	close_function(e, "s");
+}
+
+static void emit_start(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const int states = e->system->states, size[] = { d->columns, states };
+	double *value = ARRAY(double, (size_t)(d->columns * states));
+	for (int b = 0; b < d->blocks; b++)
+		for (int i = 0; i < d->block[b].step->model->system.states; i++) {
+			int state, column = column_of(e->step->model->written, &d->block[b], i, &state);
+			if (column != NONE)
+				value[column * states + state] =
+					finite_number(e, d->block[b].step->model->initial[i]);
+		}
+	emit_array(e, "Derivatives of the initial state", "d_initial", 2, size, value, NULL);
+}
+
+void emit_step_derivatives(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const char **name = ARRAY(const char *, (size_t)d->columns);
+	for (int i = 0; i < d->columns; i++)
+		name[i] = column_name(&d->column[i]);
+	say(e, "\n/* ---- derivatives ---- */\n");
+	for (int b = 0; b < d->blocks; b++) {
+		emit_block_step(e, &d->block[b], b);
+		if (e->model->declared_outputs)
+			emit_block_outputs(e, &d->block[b], b);
+	}
+	for (int b = 0; b < d->blocks && has_values_between(e); b++)
+		emit_block_at(e, &d->block[b], b);
+	emit_step_of_all(e);
+	if (has_values_between(e))
+		emit_at_of_all(e);
+	emit_outputs_of_all(e);
+	emit_start(e);
+	emit_name_list(e, "d_names", d->columns, name);
+	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
+		   { "SLOPED", d->seeded && e->ramps });
+	say_include(e, "derivatives.h");
+}

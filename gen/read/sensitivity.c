@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives by params, by initial values and along inputs: which are asked for, and the equations that they follow.
+ * A spec is joined by its derivative at fixed time: of each coordinate x one more, x_k, the derivative of each
+ * equation, element, initial value and output. What x_k does is then what any coordinate does: exact where x is. */
+#include "read/parser.h"
+
+#include <string.h>
+
+/* ---- the statement ---- */
+
+static bool same_sensitivity(const struct sensitivity *a, const struct sensitivity *b)
+{
+	return a->symbol == b->symbol && a->component == b->component && a->primes == b->primes;
+}
+
+static void add_sensitivity(struct spec *spec, struct sensitivity s)
+{
+	for (int i = 0; i < spec->sensitivities; i++)
+		if (same_sensitivity(&spec->sensitivity[i], &s))
+			error(s.at, NULL, "%s stands in the list already", s.name);
+	if (spec->sensitivities == LIMIT_SENSITIVITIES)
+		error(s.at, "of some params: sensitivity k, c", "more derivatives than the limit of %d",
+		      LIMIT_SENSITIVITIES);
+	*MORE(spec->sensitivity, spec->sensitivities) = s;
+}
+
+/* Of a vector each component */
+static void add_initials(struct spec *spec, struct sensitivity s)
+{
+	const int last = s.component || !s.symbol->length ? s.component : s.symbol->length;
+	for (int i = s.symbol->length && !s.component ? 1 : s.component; i <= last; i++) {
+		s.component = i;
+		s.name = i ? format("%s[%d]%.*s", s.symbol->name, i, s.primes, "'")
+			   : format("%s%.*s", s.symbol->name, s.primes, "'");
+		add_sensitivity(spec, s);
+	}
+}
+
+static bool reads_names(const struct node *node)
+{
+	bool found = node->kind == NODE_NAME || node->kind == NODE_FILE;
+	for (int i = 0; i < node->children && !found; i++)
+		found = reads_names(node->child[i]);
+	return found;
+}
+
+/* Params that do not follow from others */
+static void add_all(struct spec *spec, struct place at)
+{
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_PARAM && !s->broken && !reads_names(s->value))
+			add_sensitivity(spec, (struct sensitivity){ at, s, 0, 0, s->name });
+}
+
+static void take_sensitivity(struct parser *p)
+{
+	if (p->token.kind != TOKEN_NAME || is_reserved(p->token.name))
+		unexpected(p, "a param, a state or an input");
+	struct token token = take(p);
+	const struct node *name = resolve_name(p, token);
+	struct sensitivity s = { token.at, name->symbol, name->component, name->primes, token.name };
+	if (!name->symbol || name->kind != NODE_NAME ||
+	    (name->symbol->kind != SYMBOL_PARAM && name->symbol->kind != SYMBOL_COORD &&
+	     name->symbol->kind != SYMBOL_INPUT))
+		error(token.at, "params have derivatives, states by their initial values, and inputs",
+		      "no derivative is by %s '%s'", name->symbol ? symbol_kind(name->symbol) : "output", token.name);
+	if (name->primes > (name->symbol->kind == SYMBOL_COORD))
+		error(token.at, NULL, "%s has no initial value", text_between(token.at, p->end));
+	if (name->symbol->kind == SYMBOL_INPUT && name->symbol->hold > 1)
+		error(token.at, "held inputs and ramps have one",
+		      "no derivative is built along '%s', which goes through further samples", token.name);
+	if (name->symbol->kind == SYMBOL_COORD)
+		add_initials(p->spec, s);
+	else
+		add_sensitivity(p->spec, s);
+}
+
+static void take_sensitivities(struct parser *p)
+{
+	do {
+		if (p->token.kind == TOKEN_NAME && !find_symbol(p, "all") && strcmp(p->token.name, "all") == 0)
+			add_all(p->spec, take(p).at);
+		else
+			take_sensitivity(p);
+	} while (take_op(p, ","));
+	expect_end(p);
+}
+
+/* sensitivity: sensitivity ( all | NAME { ' } ) { , ... } */
+void read_sensitivity(struct parser *p)
+{
+	take_sensitivities(p);
+}
+
+static void read_from_line(void *context)
+{
+	struct parser *p = context;
+	p->token = lex_next(&p->lexer);
+	p->end = p->token.at;
+	take_sensitivities(p);
+}
+
+bool parse_sensitivities(struct spec *spec, const struct source *source)
+{
+	struct parser p = { .spec = spec, .own = spec, .lexer = { source, 0, source->length, true, false } };
+	spec->sensitivities = 0;
+	spec->sensitivity = NULL;
+	return statement_guard(read_from_line, &p);
+}
+
+/* ---- the equations of the derivatives ---- */
+
+struct varying {                    /* one derivative */
+	struct spec *spec;
+	const struct sensitivity *of;
+	struct slope by;
+	const char *suffix;         /* of its symbols: k, x_0 */
+};
+
+static struct symbol *add_like(const struct varying *v, const struct symbol *like)
+{
+	struct symbol *s = NEW(struct symbol);
+	*s = (struct symbol){ .kind = like->kind, .name = format("%s_%s", like->name, v->suffix), .at = like->at,
+			      .statement = like->statement, .part = like->part, .length = like->length, .used = true,
+			      .hold = like->hold, .peak = like->peak };
+	add_symbol(v->spec, s);
+	return s;
+}
+
+static void add_moved(struct varying *v, int symbols)
+{
+	struct spec *spec = v->spec;
+	for (struct symbol *s = spec->first; s && s->number <= symbols; s = s->next)
+		if (s->kind == SYMBOL_COORD) {
+			struct symbol *made = v->by.moved[s->number] = add_like(v, s);
+			made->index = spec->count.components;
+			spec->count.components += s->length ? s->length : 1;
+			spec->count.coords++;
+		} else if (s->kind == SYMBOL_INPUT && s == v->of->symbol) {
+			v->by.moved[s->number] = add_like(v, s);
+			v->by.moved[s->number]->index = spec->count.inputs++;
+		}
+}
+
+static void add_equation(struct varying *v, struct equation e)
+{
+	e.left = slope_by(e.left, v->by);
+	e.right = slope_by(e.right, v->by);
+	*MORE(v->spec->equation, v->spec->equations) = e;
+}
+
+static struct node *moved_node(const struct varying *v, const struct node *node)
+{
+	return node ? state_node(v->by.moved[node->symbol->number], node->component, node->primes) : NULL;
+}
+
+static struct node *product_of(struct node *a, struct node *b)
+{
+	struct node *product = node_new(NODE_PRODUCT, a->at);
+	add_child(product, a, false, a->at);
+	add_child(product, b, false, a->at);
+	return product;
+}
+
+/* -factor (from - to), their derivatives of that order */
+static struct node *force_between(struct node *factor, const struct element *e, int order, bool reversed)
+{
+	struct node *sum = node_new(NODE_SUM, e->at);
+	add_child(sum, state_node(e->from->symbol, e->from->component, order), !reversed, e->at);
+	if (e->to)
+		add_child(sum, state_node(e->to->symbol, e->to->component, order), reversed, e->at);
+	return product_of(factor, sum);
+}
+
+/* The same element between the derivatives, and forces on them as its value changes */
+static void add_element(struct varying *v, struct element e)
+{
+	const struct element own = e;
+	struct node *change = slope_by(e.value, v->by);
+	const bool force = e.kind == ELEMENT_FORCE;
+	const int order = e.kind == ELEMENT_MASS ? 2 : e.kind == ELEMENT_DAMPER ? 1 : 0;
+	e.from = moved_node(v, own.from);
+	e.to = moved_node(v, own.to);
+	if (force)
+		e.value = change;
+	*MORE(v->spec->element, v->spec->elements) = e;
+	for (int end = 0; end < (own.to ? 2 : 1) && !force && !is_zero_node(change); end++) {
+		struct element by = { .kind = ELEMENT_FORCE, .part = own.part, .at = own.at, .end = own.end };
+		by.from = end ? e.to : e.from;
+		by.value = force_between(change, &own, order, end);
+		*MORE(v->spec->element, v->spec->elements) = by;
+	}
+}
+
+static void add_initial_node(struct varying *v, const struct initial *like, struct node *value)
+{
+	struct initial made = *like;
+	made.coord = v->by.moved[like->coord->number];
+	made.value = value;
+	*MORE(v->spec->initial, v->spec->initials) = made;
+}
+
+static void add_initials_of(struct varying *v, int initials)
+{
+	const struct sensitivity *of = v->of;
+	for (int i = 0; i < initials; i++) {
+		const struct initial like = v->spec->initial[i];
+		struct node *value = slope_by(like.value, v->by);
+		if (!is_zero_node(value))
+			add_initial_node(v, &like, value);
+	}
+	if (of->symbol->kind != SYMBOL_COORD)
+		return;
+	struct node *one = node_new(NODE_NUMBER, of->at);
+	mpq_set_ui(one->number, 1, 1);
+	add_initial_node(v, &(struct initial){ of->at, NULL, 0, of->symbol, of->primes, of->component, NULL }, one);
+}
+
+/* Of the shape of the output, whatever that of its derivative: with 0 times it */
+static void add_outputs(struct varying *v, int symbols)
+{
+	for (struct symbol *s = v->spec->first; s && s->number <= symbols; s = s->next) {
+		if (s->kind != SYMBOL_OUTPUT)
+			continue;
+		struct node *sum = node_new(NODE_SUM, s->value->at), *none = node_new(NODE_NUMBER, s->value->at);
+		sum->start = s->value->start;
+		add_child(sum, product_of(none, s->value), false, s->value->at);
+		add_child(sum, slope_by(s->value, v->by), false, s->value->at);
+		struct symbol *made = add_like(v, s);
+		made->value = sum;
+		made->index = v->spec->count.outputs++;
+	}
+}
+
+struct extent { int symbols, equations, elements, initials; };
+
+static void vary(struct varying *v, struct extent before)
+{
+	struct spec *spec = v->spec;
+	v->by.moved = ARRAY(struct symbol *, (size_t)before.symbols + 1);
+	v->by.known = ARRAY(struct node *, (size_t)before.symbols + 1);
+	add_moved(v, before.symbols);
+	for (int i = 0; i < before.equations; i++)
+		add_equation(v, spec->equation[i]);
+	for (int i = 0; i < before.elements; i++)
+		add_element(v, spec->element[i]);
+	add_initials_of(v, before.initials);
+	add_outputs(v, before.symbols);
+	if (spec->request.step && !is_zero_node(slope_by(spec->request.step, v->by)))
+		error(v->of->at, "--step gives the step another way", "the step follows from '%s'", v->of->name);
+}
+
+/* x, q[2]' as x_0, q2_dot0 */
+static const char *suffix_of(const struct sensitivity *s)
+{
+	const char *name = s->component ? format("%s%d", s->symbol->name, s->component) : s->symbol->name;
+	return s->symbol->kind == SYMBOL_COORD ? format("%s%s_0", name, s->primes ? "_dot" : "") : name;
+}
+
+void add_derivatives(struct spec *spec, int first, int count)
+{
+	if (count == 0)
+		return;
+	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->initials };
+	for (int i = first; i < first + count; i++) {
+		const struct sensitivity *s = &spec->sensitivity[i];
+		struct varying v = { spec, s, { .at = s->at, .kind = SLOPE_PARAM, .name = s->name }, suffix_of(s) };
+		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;
+		vary(&v, before);
+	}
+	spec->adopted = true;                   /* units have been looked at, */
+	spec->ranges = spec->required.needs = 0; /* and what is said of states and outputs is of the model's own */
+}

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives of a step: the spec joined by its derivative is a model of its own, of which the steps of the derivatives
+ * are taken. What it does not couple leaves no trace there, and each of its numbers is rounded once. */
+#include "step.h"
+#include "model/reads.h"
+
+/* What of the request concerns how a step is made faster, or reports it, does not hold for the derivatives. */
+static struct request request_of_derivatives(const struct step *step, int first, int count)
+{
+	struct request request = step->model->request;
+	request.again = (struct again){ .derivatives_from = first, .derivatives = count };
+	request.scheme = scheme_name(SCHEME_EXACT);
+	request.modes = NULL;
+	request.reduce = request.compensated = request.selftest = false;
+	request.fast = request.phasors = request.batch = false;
+	request.rows = request.refresh = 1;
+	request.form = step->form == FORM_DIRECT ? FORM_DIRECT : FORM_DELTA;
+	return request;
+}
+
+int load_alike(const struct linear *system, const struct load *load)
+{
+	for (int l = 0; l < system->loads; l++) {
+		const struct forcing *own = system->load[l].forcing, *other = load->forcing;
+		if (mpq_equal(own->a, other->a) && mpq_equal(own->w, other->w) && mpq_equal(own->p, other->p))
+			return l;
+	}
+	return NONE;
+}
+
+/* Phases and envelopes are those of the model. */
+static void check_loads(const struct step *step, const struct step *made, const struct sensitivity *by)
+{
+	const struct linear *own = &step->branch->system, *system = &made->branch->system;
+	for (int l = 0; l < system->loads; l++)
+		if (load_acts(system, &system->load[l]) && !is_polynomial(system->load[l].forcing) &&
+		    load_alike(own, &system->load[l]) == NONE)
+			error(by->at, "another amplitude than 0 makes it one",
+			      "the derivative by '%s' is driven by %s, which is no load of the model", by->name,
+			      column_text(&system->load[l], 0));
+}
+
+static struct step *step_of(const struct step *step, int first, int count)
+{
+	const struct request request = request_of_derivatives(step, first, count);
+	const struct model *model = model_build(parse_spec(step->model->spec->source), &request);
+	struct step *made = model ? step_build(model) : NULL;
+	if (!made)
+		abandon();
+	check_loads(step, made, &step->model->spec->sensitivity[first]);
+	return made;
+}
+
+/* As many together as have a step that is unrolled: those share the loads' functions. */
+static int columns_together(const struct step *step)
+{
+	const int together = LIMIT_UNROLLED_STATES / step->model->written->system.states - 1;
+	return together > 1 ? together : 1;
+}
+
+static void derive(void *context)
+{
+	struct step *step = context;
+	const struct spec *spec = step->model->spec;
+	const char *against = step_objection(step, CAN_DERIVATIVES);
+	if (against)
+		error(spec->sensitivity[0].at, NULL, "%s%s", words_before(CAN_DERIVATIVES), against);
+	struct derivatives *d = NEW(struct derivatives);
+	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity };
+	for (int i = 0; i < d->columns; i++)
+		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
+	const int together = columns_together(step);
+	for (int first = 0; first < d->columns; first += together) {
+		const int left = d->columns - first, count = left < together ? left : together;
+		struct derivative_block *block = MORE(d->block, d->blocks);
+		*block = (struct derivative_block){ first, count, NULL };
+		d->block[d->blocks - 1].step = step_of(step, first, count);
+	}
+	step->derivatives = d;
+}
+
+bool find_derivatives(struct step *step)
+{
+	return step->model->spec->sensitivities == 0 || statement_guard(derive, step);
+}
+
+bool derivatives_read_load(const struct step *step, int load)
+{
+	bool read = false;
+	for (int b = 0; step->derivatives && b < step->derivatives->blocks; b++) {
+		const struct step *made = step->derivatives->block[b].step;
+		const int own = load_alike(&made->branch->system, &step->branch->system.load[load]);
+		read = read || (own != NONE && load_acts(&made->branch->system, &made->branch->system.load[own]));
+	}
+	return read;
+}

@@ -1,0 +1,68 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# derivatives.sh PLGEN PLRUN JUDGE SOURCE [SEEDS]: derivatives of steps, as TAP. Constants and runs of random models
+# against JUDGE, made of derivatives.c, which differs in multiprecision; those of derivatives.cases, by plrun, within
+# 2e-13 of the largest of their column, and beside them the outputs of a run without derivatives, to the last bit.
+set -u
+absolute() {
+	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
+}
+PLGEN=$(absolute "$1")
+plrun=$(absolute "$2")
+judge=$(absolute "$3")
+root=$(absolute "$4")
+seeds=${5:-16}
+export PLGEN
+. "$root/tests/tap.sh"
+. "$root/tests/run_cc.sh"
+XDG_CACHE_HOME=$work/cache
+CC=${run_cc%% *}
+CFLAGS=${run_cc#* }
+export XDG_CACHE_HOME CC CFLAGS
+runtime_archive "$root/runtime"
+
+# numbers SEED OPTION ...: what the C of a random model computes
+numbers() {
+	seed=$1
+	shift
+	"$judge" spec "$seed" >r.spec && "$PLGEN" --prefix r "$@" r.spec >r.c 2>log &&
+		$run_cc -I"$root/runtime" -DMODEL=r "$root/tests/accuracy/derivatives.c" r.c "$archive" -lm -o r \
+			>>log 2>&1 && ./r
+}
+
+constants=0
+seed=0
+while [ "$seed" -lt "$seeds" ]; do
+	seed=$((seed + 1))
+	numbers "$seed" >numbers && "$judge" judge "$seed" <numbers >judged
+	status=$?
+	cat judged >>log
+	constants=$((constants + $(sed -n 's/ constants//p' judged)))
+	result $status "random model $seed"
+done
+: >log
+[ "$constants" -ge 400 ]
+result $? "$constants constants, each its correctly rounded value"
+
+awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives.cases" >names || exit 99
+while read -r name; do
+	by=$(sed -n 's,^d[^/]*/d\([^ ]*\) .*,\1,p' "$name.values" | awk '!n[$0]++' | paste -s -d ,)
+	end=$(sed -n 's/^at //p' "$name.values")
+	"$plrun" --sensitivity "$by" "$name.spec" "$end" >rows.csv 2>log &&
+		tail -n 1 rows.csv >last && head -n 1 rows.csv | cat - last |
+		awk -F '[, ]' 'NR == 1 { for (i = 1; i <= NF; i++) column[$i] = i; next }
+			FNR == NR { for (i = 1; i <= NF; i++) found[i] = $i; next }
+			$1 == "at" { next }
+			{ name[++n] = $1; value[n] = $2; by = $1; sub(/.*\/d/, "", by); of[n] = by
+				size = $2 < 0 ? -$2 : $2; if (size > largest[by]) largest[by] = size }
+			END { for (i = 1; i <= n; i++) { f = found[column[name[i]]]; off = f - value[i]
+				most = 2e-13 * largest[of[i]]
+				if (column[name[i]] == "" || !((off < 0 ? -off : off) <= most)) {
+					print name[i] ": " f ", not " value[i] " within " most; bad = 1 } }
+				exit bad || n == 0 }' - "$name.values" >>log
+	result $? "$name by $by"
+	"$plrun" "$name.spec" "$end" >plain.csv 2>log &&
+		cut -d , -f "1-$(head -n 1 plain.csv | tr , '\n' | wc -l)" rows.csv | cmp - plain.csv >>log
+	result $? "$name: its outputs are those without derivatives"
+done <names
+tap_end
