@@ -189,7 +189,8 @@ static bool is_zero_number(const struct node *node)
 /* Its force does -NAME dg/dq q' = NAME dg/dt, that of velocities -NAME dg/dq' q' */
 static void add_power_of_constraint(struct node *sum, const struct energy *energy, struct place at)
 {
-	const struct slope by_velocities = { at, SLOPE_VELOCITIES, NULL }, by_time = { at, SLOPE_LOADS, NULL };
+	const struct slope by_velocities = { .at = at, .kind = SLOPE_VELOCITIES };
+	const struct slope by_time = { .at = at, .kind = SLOPE_LOADS };
 	struct node *moved = slope_by(energy->value, by_velocities), *name = node_new(NODE_NAME, at);
 	const bool velocities = !is_zero_number(moved);
 	name->symbol = energy->multiplier;

@@ -334,8 +334,8 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_DEADZONE:
 	case FN_CLIP: return slope_of_clipped(node, by);
 	default:
-		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL, "this derivative would hold that of %s, which is not found",
-		      function_name(node->function));
+		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL,
+		      "this derivative would hold that of %s, which is not found", function_name(node->function));
 	}
 }
 

@@ -44,6 +44,60 @@ done
 [ "$constants" -ge 400 ]
 result $? "$constants constants, each its correctly rounded value"
 
+# near A B: two rows of nine numbers or more, within 1e-13 of their sizes
+near() {
+	paste -d '\n' "$1" "$2" | awk -F , 'NR % 2 { split($0, a); next }
+		{ for (i = 1; i <= NF; i++) if (($i - a[i])^2 > 1e-26 * (1e-6 + a[i]^2)) {
+			print "column " i ": " $i ", not " a[i]; bad = 1 } }
+		END { exit bad || NR != 2 || NF < 9 }' >>log
+}
+
+cat >head <<'END'
+param m = 2, k = 50, c = 0.5, F = 3, w = 4
+coord x, y
+init x = 0.01*m
+sensitivity m, k, c, F, w, y
+step 0.01
+END
+{ echo 'model net'; cat head - <<'END'; } >net.spec
+mass m at x
+mass 3*m at y
+spring k^2/50 between x, y
+spring k between x, ground
+damper c between x, y
+force F*cos(w*t) on y
+END
+{ echo 'model eqs'; cat head - <<'END'; } >eqs.spec
+m*x'' + c*(x' - y') + k^2/50*(x - y) + k*x = 0
+3*m*y'' = c*(x' - y') + k^2/50*(x - y) + F*cos(w*t)
+END
+for name in net eqs; do
+	"$plrun" $name.spec 2 2>log | tail -n 1 >$name.row
+done
+near net.row eqs.row
+result $? 'a network has the derivatives of its equations'
+
+cat >held.spec <<'END'
+model along
+param m = 2
+coord x
+input v, u
+sensitivity u
+output x, acc = x'', sum = 3*u + x
+m*x'' + 0.5*x' + 50*x = u - v
+step 0.01
+END
+sed 's/v, u/v, u hold first/' held.spec >ramp.spec
+{ echo v,u; yes 0,1 | head -n 40; } >ones.csv
+for name in held ramp; do
+	"$plrun" $name.spec --input ones.csv 2>log | tail -n 1 >row
+	cut -d , -f 2-4 row >own
+	cut -d , -f 5-7 row >along
+	paste -d , own own own >threefold
+	paste -d , along along along | near threefold -
+	result $? "along an input, $name: from rest the derivative is the motion itself"
+done
+
 awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives.cases" >names || exit 99
 while read -r name; do
 	by=$(sed -n 's,^d[^/]*/d\([^ ]*\) .*,\1,p' "$name.values" | awk '!n[$0]++' | paste -s -d ,)
