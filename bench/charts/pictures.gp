@@ -126,28 +126,27 @@ plot $others using 1:2 with points pt 7 ps 0.45 lc rgb colour('other') title 'ag
 	$cheapest using 1:2 with points pt 5 ps 1.2 lc rgb colour('exact') title 'against the cheapest peer'
 eval write
 
-=== hard: hard.csv narrow
+=== hard: hard.csv
 # Methods down, cases across, what came of it
-load made('hard_grid', '-v narrow='.narrow, csv)
-size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + (narrow ? 19 : 23)*rows)
+load made('hard_grid', '', csv)
+size = sprintf('%d,%d', 900, 150 + 23*rows)
 unset logscale; unset grid; unset border; unset xtics
 set xrange [0.5:cases + 0.5]; set x2range [0.5:cases + 0.5]; set yrange [rows + 0.5:0.5]
-eval "set ytics (".tics.") noenhanced scale 0 font ',".(narrow ? 9 : 11)."'"
-eval "set x2tics (".cases_tics.") noenhanced scale 0 rotate by 40 left offset 0,0 font ',".(narrow ? 9 : 11)."' ".\
+eval "set ytics (".tics.") noenhanced scale 0 font ',11'"
+eval "set x2tics (".cases_tics.") noenhanced scale 0 rotate by 40 left offset 0,0 font ',11' ".\
 	"textcolor rgb '#202020'"
-set lmargin (narrow ? 20 : 26); set rmargin (narrow ? 8 : 10)
+set lmargin 26; set rmargin 10
 set key off
 eval heading
 eval sprintf("set tmargin %g", 1.5 + 1.15*lines_of(found) + 4.4)
-set bmargin (narrow ? 4 : 3)
+set bmargin 3
 set style fill solid 1 border rgb '#ffffff'
-legend = narrow ? \
-	"blue: error below 0.001; p, poor: below 0.1; w, wrong:\nabove; d: diverged; q: gave up; r: refused" : \
+legend = \
 	'ok: error below 0.001   exact: nothing left over, ok   poor: below 0.1   wrong: above   div.: diverged   '.\
 	'quit: gave up   ref.: refused'
-set label 1 legend at screen 0.02,screen 0.0 offset 0,(narrow ? 2.2 : 1.2) left font ',10' textcolor rgb '#202020'
+set label 1 legend at screen 0.02,screen 0.0 offset 0,1.2 left font ',10' textcolor rgb '#202020'
 plot $cells using 1:2:(0.5):(0.5):3 with boxxyerror lc rgb variable, \
-	$cells using 1:2:4 with labels font (narrow ? ',9' : ',10') textcolor rgb '#000001'
+	$cells using 1:2:4 with labels font ',10' textcolor rgb '#000001'
 eval write
 
 === headline_integrators: headline_integrators.csv narrow
