@@ -51,7 +51,7 @@ static struct piece *owner_of(const struct runtime *r, const char *word, size_t 
 			high = middle;
 	}
 	low += place;
-	return low < r->owners && is_word(word, length, r->owner[low].name) ? &r->piece[r->owner[low].piece] : NULL;
+	return low < r->owners && is_named(word, length, r->owner[low].name) ? &r->piece[r->owner[low].piece] : NULL;
 }
 
 /* Does a file include another, itself or through one that it includes? */
@@ -94,12 +94,6 @@ static const char *new_name(const struct runtime *r, const struct piece *from, c
 	return name;
 }
 
-/* Of a member, after . or ->, the name stays. */
-static bool is_member(const char *text, const char *word)
-{
-	return word > text && (word[-1] == '.' || (word - text > 1 && word[-2] == '-' && word[-1] == '>'));
-}
-
 static const char *renamed(const struct runtime *r, const struct piece *p)
 {
 	char *text = NULL;
@@ -109,7 +103,7 @@ static const char *renamed(const struct runtime *r, const struct piece *p)
 	need_memory(to);
 	while ((word = next_word(&at, &length))) {
 		fprintf(to, "%.*s", (int)(word - done), done);
-		fputs(is_member(p->text, word) ? format("%.*s", (int)length, word) : new_name(r, p, word, length), to);
+		fputs(is_member(word, p->text) ? format("%.*s", (int)length, word) : new_name(r, p, word, length), to);
 		done = at;
 	}
 	fputs(done, to);

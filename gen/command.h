@@ -120,7 +120,6 @@ struct runtime {
 };
 struct runtime *runtime_read(bool single, bool kept);
 const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */
-bool is_word(const char *word, size_t length, const char *name);
 
 /* ---- bundle.c: a model with the runtime inside ---- */
 

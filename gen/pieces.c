@@ -42,11 +42,6 @@ const char *next_word(const char **at, size_t *length)
 	return NULL;
 }
 
-bool is_word(const char *word, size_t length, const char *name)
-{
-	return strncmp(word, name, length) == 0 && name[length] == 0;
-}
-
 static const char *first_sign(const char *text, const char *signs)
 {
 	for (; *text; text = token_end(text))

@@ -97,6 +97,8 @@ void *allocate(size_t count, size_t size);                 /* zeroed */
 void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */
 char *format(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
+const char *name_list(int count, const char *const *name);     /* x, y; "" of none */
+int place_among(int count, const char *const *name, const char *text, size_t length); /* of so long a text; -1: not */
 int  *numbers_up_to(int count);                            /* 0, 1, ... */
 mpq_t *rationals(size_t count);                            /* initialised to 0 */
 mpq_t *rationals_copied(size_t count, const mpq_t *q);

@@ -281,6 +281,22 @@ char *format(const char *fmt, ...)
 	return text;
 }
 
+const char *name_list(int count, const char *const *name)
+{
+	const char *list = count > 0 ? name[0] : "";
+	for (int i = 1; i < count; i++)
+		list = format("%s, %s", list, name[i]);
+	return list;
+}
+
+int place_among(int count, const char *const *name, const char *text, size_t length)
+{
+	for (int i = 0; i < count; i++)
+		if (strlen(name[i]) == length && memcmp(name[i], text, length) == 0)
+			return i;
+	return -1;
+}
+
 void rationals_free(mpq_t *q, size_t count)
 {
 	for (size_t i = 0; i < count; i++)

@@ -321,13 +321,14 @@ static struct form *form_of_monomial(struct collector *c, const struct node *nod
 	return form;
 }
 
-static struct form *whole_product(struct collector *c, const struct node *node, const struct form *a,
+static struct form *whole_product(struct collector *c, const struct node *node, const struct form *a, unsigned n,
 				  const struct form *b)
 {
 	struct monomial m;
 	monomial_init(&m);
-	multiply_form(c, node, &m, a, 1);
-	multiply_form(c, node, &m, b, 1);
+	multiply_form(c, node, &m, a, n);
+	if (b)
+		multiply_form(c, node, &m, b, 1);
 	struct form *form = form_of_monomial(c, node, &m);
 	mpq_clear(m.factor);
 	return form;
@@ -369,13 +370,13 @@ struct form *kept_product(struct collector *c, const struct node *node, const st
 	struct form *sum = form_sum(form_product(c, x.constant, b), form_product(c, moving_a, y.constant), false);
 	if (x.time->terms && y.time->terms)
 		sum = form_sum(sum,
-			       (c->whole_time ? whole_product(c, node, x.time, y.time)
+			       (c->whole_time ? whole_product(c, node, x.time, 1, y.time)
 					      : load_product(c, x.time, y.time)),
 			       false);
 	if (x.time->terms && y.rest->terms)
-		sum = form_sum(sum, whole_product(c, node, x.time, y.rest), false);
+		sum = form_sum(sum, whole_product(c, node, x.time, 1, y.rest), false);
 	if (x.rest->terms)
-		sum = form_sum(sum, whole_product(c, node, x.rest, moving_b), false);
+		sum = form_sum(sum, whole_product(c, node, x.rest, 1, moving_b), false);
 	return sum;
 }
 
@@ -413,17 +414,6 @@ static struct form *constant_to_power(struct collector *c, const struct node *no
 	return form;
 }
 
-/* x^n as one product, n >= 1. A sum stays whole: multiplied out it would lose digits to cancellation. */
-static struct form *power_form(struct collector *c, const struct node *node, const struct form *x, unsigned n)
-{
-	struct monomial m;
-	monomial_init(&m);
-	multiply_form(c, node, &m, x, n);
-	struct form *form = form_of_monomial(c, node, &m);
-	mpq_clear(m.factor);
-	return form;
-}
-
 /* Of loads that the linear core carries: multiplied out */
 static struct form *load_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
 {
@@ -440,7 +430,7 @@ struct form *kept_whole_power(struct collector *c, const struct node *node, cons
 	return is_constant(x) ? constant_to_power(c, node, x, exponent)
 	       : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })
 	       : load         ? load_power(c, node, x, n)
-			      : power_form(c, node, x, n);
+			      : whole_product(c, node, x, n, NULL);
 }
 
 struct form *kept_power(struct collector *c, const struct node *node, const struct form *base,

@@ -63,6 +63,7 @@ const struct form_term **terms_within(const struct form *form, bool *seen);
 struct form *form_scale(const struct form *a, mpq_srcptr factor);
 /* one of them constant */
 struct form *form_product(struct collector *collector, const struct form *a, const struct form *b);
+struct form *terms_of_kinds(const struct form *form, unsigned kinds); /* bit k: those of basis kind k */
 struct form constant_terms(const struct form *form);        /* the first: 1 and pi; it shares them */
 bool is_constant(const struct form *form);                  /* 1 and pi only */
 bool has_coordinate(const struct form *form);               /* or an atom, or what stands behind those */

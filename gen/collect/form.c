@@ -347,6 +347,15 @@ bool has_coordinate(const struct form *form)
 	return form->terms > 0 && form->term[form->terms - 1].basis.kind >= BASIS_COORD;
 }
 
+struct form *terms_of_kinds(const struct form *form, unsigned kinds)
+{
+	struct form *part = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (kinds >> form->term[i].basis.kind & 1)
+			form_add_basis(part, form->term[i].basis, form->term[i].factor);
+	return part;
+}
+
 struct form constant_terms(const struct form *form)
 {
 	struct form plain = { 0, form->term, 0 };

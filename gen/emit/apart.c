@@ -25,11 +25,6 @@ static bool is_type(const char *end)
 	return blanks > 0 && (in_name(end[blanks]) || (end[blanks] == '*' && in_name(end[blanks + 1])));
 }
 
-static bool is_member(const char *start, const char *text)
-{
-	return start > text && (start[-1] == '.' || (start[-1] == '>' && start - 1 > text && start[-2] == '-'));
-}
-
 void print_apart(FILE *to, const char *text, const char *name)
 {
 	const char *other = format("the_%s", name), *from = text;

@@ -361,9 +361,8 @@ static void banner_part(const struct emitter *e, int index)
 	const struct step *part = e->step->regions.part[index];
 	const struct switching *s = part->model->switching;
 	const int *function = e->model->switching->part[index].function;
-	const char *text = format("part %d:", index), *divides = "";
-	for (int i = 0; i < part->model->n; i++)
-		text = format("%s%s %s", text, i ? "," : "", part->model->names.coord[i]);
+	const char *coords = name_list(part->model->n, part->model->names.coord), *divides = "";
+	const char *text = format("part %d: %s", index, coords);
 	for (int i = 0; i < s->functions; i++)
 		divides = format("%s%s %d", divides, i ? "," : "", function[i]);
 	if (s->functions == 0)

@@ -8,14 +8,18 @@
 
 #include <string.h>
 
-static void emit_matrix(const struct emitter *e, const struct step *step, const char *declaration)
+/* Phi, or Gamma */
+static void emit_matrix(const struct emitter *e, const struct step *step, bool of_inputs, const char *declaration)
 {
-	int n = e->system->states;
-	double *value = ARRAY(double, (size_t)(n * n));
-	for (int i = 0; i < n * n; i++)
-		value[i] = step->branch->full->Phi[i].value;
-	say(e, "\n%s[$N_STATES][$N_STATES] = {  /* columns: %s */\n", declaration, state_list(step->model));
-	emit_number_rows(e, n, n, value, step->model->names.state);
+	const struct table *table = step->branch->full;
+	const struct coefficient *entry = of_inputs ? table->input : table->Phi;
+	const int columns = of_inputs ? table->inputs : table->states;
+	double *value = ARRAY(double, (size_t)(table->states * columns));
+	for (int i = 0; i < table->states * columns; i++)
+		value[i] = entry[i].value;
+	say(e, "\n%s[$N_STATES][%s] = {%s\n", declaration, of_inputs ? integer_text(columns) : spell(e, "$N_STATES"),
+	    of_inputs ? "" : format("  /* columns: %s */", state_list(step->model)));
+	emit_number_rows(e, table->states, columns, value, step->model->names.state);
 	say(e, "};\n");
 }
 
@@ -36,7 +40,7 @@ void emit_kept_phi(const struct emitter *e)
 		return;
 	const bool leaps = has_jump(e) && !e->step->is.tuned;
 	if (e->model->relative && (leaps || flows_in_full(e->step)))
-		emit_matrix(e, e->step, format("static const double %s", stepped_table(e, "Phi")));
+		emit_matrix(e, e->step, false, format("static const double %s", stepped_table(e, "Phi")));
 }
 
 static void emit_rounded(const struct emitter *e, int rows, int columns, const mpq_t *q, const char *const *row_note)
@@ -68,24 +72,13 @@ static void emit_mode_matrices(const struct emitter *e)
 static void emit_phi(const struct emitter *e)
 {
 	if (!e->step->shown->no.phi)
-		emit_matrix(e, e->step->shown, spell(e, "const double $n_Phi"));
-}
-
-static void emit_input_matrix(const struct emitter *e, const struct step *step, const char *declaration)
-{
-	const struct table *table = step->branch->full;
-	double *value = ARRAY(double, (size_t)(table->states * table->inputs));
-	for (int i = 0; i < table->states * table->inputs; i++)
-		value[i] = table->input[i].value;
-	say(e, "\n%s[$N_STATES][%d] = {\n", declaration, table->inputs);
-	emit_number_rows(e, table->states, table->inputs, value, step->model->names.state);
-	say(e, "};\n");
+		emit_matrix(e, e->step->shown, false, spell(e, "const double $n_Phi"));
 }
 
 static void emit_gamma(const struct emitter *e)
 {
 	if (given_inputs(e) && !e->step->shown->no.phi)
-		emit_input_matrix(e, e->step->shown, spell(e, "const double $n_Gamma"));
+		emit_matrix(e, e->step->shown, true, spell(e, "const double $n_Gamma"));
 }
 
 void emit_declared_tables(const struct emitter *e)

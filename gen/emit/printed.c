@@ -24,6 +24,11 @@ bool is_named(const char *text, size_t length, const char *name)
 	return strlen(name) == length && memcmp(text, name, length) == 0;
 }
 
+bool is_member(const char *word, const char *text)
+{
+	return word > text && (word[-1] == '.' || (word - text > 1 && word[-2] == '-' && word[-1] == '>'));
+}
+
 const char *behind_plain(const char *text)
 {
 	text++;

@@ -68,10 +68,7 @@ bool has_jump(const struct emitter *e)
 
 const char *state_list(const struct model *model)
 {
-	const char *list = "";
-	for (int i = 0; i < model->system.states; i++)
-		list = format("%s%s%s", list, i ? ", " : "", model->names.state[i]);
-	return list;
+	return name_list(model->system.states, model->names.state);
 }
 
 const char *carried_text(const struct emitter *e)

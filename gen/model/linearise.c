@@ -23,14 +23,6 @@ enum { BITS = 256, SHORT = 24, NAMED = 8 };
 
 /* ---- given values ---- */
 
-static int state_called(const struct model *model, const char *name, size_t length)
-{
-	for (int i = 0; i < model->system.states; i++)
-		if (strlen(model->names.state[i]) == length && strncmp(model->names.state[i], name, length) == 0)
-			return i;
-	return -1;
-}
-
 /* Of NAME=EXPR at `text`: the place that it names, behind the states t; what is no state, or was given, is an error. */
 static int state_given(const struct linearising *l, const char *text, size_t name, struct place place, bool *given)
 {
@@ -39,7 +31,7 @@ static int state_given(const struct linearising *l, const char *text, size_t nam
 	while (name > 0 && text[name - 1] == ' ')
 		name--;
 	const bool time = name == 1 && *text == 't';
-	const int state = time ? l->states : state_called(l->b->model, text, name);
+	const int state = time ? l->states : place_among(l->states, l->b->model->names.state, text, name);
 	if (state < 0)
 		error(place, "states are coordinates, and their velocities: --at x=0.1,x'=2",
 		      "no state is called '%.*s'", (int)name, text);
@@ -281,7 +273,7 @@ static void print_equations(FILE *to, struct linearising *l)
 static bool names_itself(const struct model *model, const char *name)
 {
 	const size_t length = strlen(name);
-	if (state_called(model, name, length) >= 0)
+	if (place_among(model->system.states, model->names.state, name, length) >= 0)
 		return true;
 	for (int i = 0; i < model->n; i++) {
 		const size_t own = strlen(model->names.coord[i]);
@@ -342,14 +334,9 @@ static void print_initials(FILE *to, const struct linearising *l)
 
 /* ---- the whole ---- */
 
-/* Without what depends on time alone, which no equilibrium is sought for */
 static const struct form *without_loads(const struct form *form)
 {
-	struct form *kept = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind != BASIS_FORCING)
-			form_add_basis(kept, form->term[i].basis, form->term[i].factor);
-	return kept;
+	return terms_of_kinds(form, ~(1u << BASIS_FORCING));
 }
 
 static void list_inputs(struct linearising *l)

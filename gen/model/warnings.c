@@ -133,29 +133,19 @@ static void compare(struct jacobian *j, bool moved, const char *where, struct so
 	}
 }
 
-static bool stiffness_moves(const struct jacobian *j)
+/* What the entries of K read, whatever their row */
+static void find_stiffness_reads(const struct jacobian *j, bool *time, bool *states)
 {
 	const struct model *model = j->b->model;
+	*time = *states = false;
 	for (int k = 0; k < model->n; k++) {
 		struct reads reads = reads_of(model, model->n, (const struct form *const *)j->K[k]);
+		*time = *time || reads.time;
 		for (int l = 0; l < model->system.loads; l++)
-			reads.time = reads.time || reads.load[l];
-		if (reads.time)
-			return true;
-	}
-	return false;
-}
-
-static bool stiffness_reads_states(const struct jacobian *j)
-{
-	const struct model *model = j->b->model;
-	for (int k = 0; k < model->n; k++) {
-		struct reads reads = reads_of(model, model->n, (const struct form *const *)j->K[k]);
+			*time = *time || reads.load[l];
 		for (int i = 0; i < model->system.states; i++)
-			if (reads.state[i])
-				return true;
+			*states = *states || reads.state[i];
 	}
-	return false;
 }
 
 /* ---- a reference, to see how far the motion goes ---- */
@@ -303,14 +293,15 @@ static void check_softness(struct jacobian *j)
 	j->state = rationals(model->system.states);
 	if (!silent_guard(jacobian_evaluate, j))
 		j->state = model->initial;
-	bool moves = stiffness_moves(j);
+	bool moves, reads_states;
+	find_stiffness_reads(j, &moves, &reads_states);
 	for (int k = 0; k <= (moves ? SAMPLES : 0); k++) {
 		mpq_set_ui(j->t, (unsigned long)k, SAMPLES);
 		mpq_canonicalize(j->t);
 		mpq_mul(j->t, j->t, end);
 		compare(j, false, moves ? format("at t = %.4g s ", mpq_get_d(j->t)) : "", &worst);
 	}
-	if (stiffness_reads_states(j)) {
+	if (reads_states) {
 		mpq_set_ui(j->t, 0, 1);
 		j->state = model->initial;
 		compare(j, true, "at the initial values ", &worst);

@@ -85,14 +85,6 @@ static void take_orders(struct campbell *c, const char *text)
 
 /* ---- pairs of coordinates ---- */
 
-static int coordinate_called(const struct model *model, const char *name, size_t length)
-{
-	for (int i = 0; i < model->n; i++)
-		if (strlen(model->names.coord[i]) == length && strncmp(model->names.coord[i], name, length) == 0)
-			return i;
-	return -1;
-}
-
 static void add_pair(struct campbell *c, int first, int second, const char *by)
 {
 	const struct whirl_pair pair = { first, second, by };
@@ -111,11 +103,12 @@ static bool is_paired(const struct campbell *c, int coord)
 static void take_pairs(struct campbell *c, const struct model *model, const char *text)
 {
 	struct place at = { source_argument(text), 0 };
+	const char *const *name = model->names.coord;
 	for (const char *end; *text; text = end + (*end == ',')) {
 		end = text + strcspn(text, ",");
 		const char *colon = memchr(text, ':', (size_t)(end - text));
-		const int first = colon ? coordinate_called(model, text, (size_t)(colon - text)) : -1;
-		const int second = colon ? coordinate_called(model, colon + 1, (size_t)(end - colon - 1)) : -1;
+		const int first = colon ? place_among(model->n, name, text, (size_t)(colon - text)) : -1;
+		const int second = colon ? place_among(model->n, name, colon + 1, (size_t)(end - colon - 1)) : -1;
 		if (first < 0 || second < 0 || first == second)
 			error(at, NULL, "--whirl takes pairs of coordinates, x:y,a:b: '%.*s' is none",
 			      (int)(end - text), text);

@@ -317,12 +317,9 @@ static void text_reduction(FILE *to, const struct step *step)
 		bool same = strcmp(text, model->names.state[i]) == 0;
 		fprintf(to, "    state %s%s%s\n", model->names.state[i], same ? "" : " = ", same ? "" : text);
 	}
-	fputs("Gone:", to);
-	for (int i = 0; i < model->reduction.dropped; i++)
-		fprintf(to, "%s %s", i ? "," : "", model->reduction.dropped_name[i]);
-	fputs(model->reduction.dropped ? " (no output sees them, nor a combination of the states that are left).\n"
-				       : " nothing.\n",
-	      to);
+	fprintf(to, "Gone: %s%s.\n", name_list(model->reduction.dropped, model->reduction.dropped_name),
+		model->reduction.dropped ? " (no output sees them, nor a combination of the states that are left)"
+					 : "nothing");
 	struct pole_report *pole;
 	int count = poles_of(step->model, step->branch->resolvent, &pole);
 	fputs("Poles that are left:\n", to);

@@ -95,10 +95,7 @@ void text_modal_truncation(FILE *to, const struct model *model)
 		model->system.inputs ? ", inputs 0," : "");
 	for (int i = 0; i < model->outputs; i++)
 		fprintf(to, "    %s\n", truncation_text(model, i));
-	fputs("States:", to);
-	for (int i = 0; i < model->system.states; i++)
-		fprintf(to, "%s %s", i ? "," : "", model->names.state[i]);
-	fputs("\n", to);
+	fprintf(to, "States: %s\n", name_list(model->system.states, model->names.state));
 }
 
 /* Members of an object */

@@ -178,11 +178,9 @@ static void print_determinant(FILE *to, const struct step *step)
 static void print_matrices(FILE *to, const struct step *step)
 {
 	const struct model *model = reported_model(step);
-	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over", is_nonlinear(step)
-			? "Of the terms that are linear with constant coefficients: " : "");
-	for (int i = 0; i < model->n; i++)
-		fprintf(to, "%s %s", i ? "," : "", escaped(model->names.coord[i]));
-	fputs("; a row for each equation, as written.</p>\n", to);
+	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over %s; a row for each equation, as written.</p>\n",
+		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients: " : "",
+		escaped(name_list(model->n, model->names.coord)));
 	print_matrix(to, "M", model, model->system.M);
 	print_matrix(to, "C", model, model->system.C);
 	print_matrix(to, "K", model, model->system.K);

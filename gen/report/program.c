@@ -322,9 +322,7 @@ static void print_parts(FILE *to, const struct step *step)
 {
 	for (int p = 0; p < step->regions.parts; p++) {
 		const struct step *part = step->regions.part[p];
-		fprintf(to, "Part %d:", p);
-		for (int i = 0; i < part->model->n; i++)
-			fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
+		fprintf(to, "Part %d: %s", p, name_list(part->model->n, part->model->names.coord));
 		if (part->model->switching->functions > 0) {
 			fputs(". ", to);
 			print_regions(to, part);

@@ -220,9 +220,7 @@ static void text_part(FILE *to, const struct step *full, int index)
 	const struct switching *all = full->model->switching;
 	const struct region_part *part = &all->part[index];
 	const struct switching *s = part->model->switching;
-	fprintf(to, "    part %d:", index);
-	for (int i = 0; i < part->model->n; i++)
-		fprintf(to, "%s %s", i ? "," : "", part->model->names.coord[i]);
+	fprintf(to, "    part %d: %s", index, name_list(part->model->n, part->model->names.coord));
 	if (s->functions == 0) {
 		fputs("; linear\n", to);
 		return;

@@ -125,18 +125,10 @@ static void emit_linear_tables(const struct emitter *part)
 	say_include(part, "search.h");
 }
 
-static const char *names_of_part(const struct emitter *part)
-{
-	const char *list = "";
-	for (int i = 0; i < part->model->n; i++)
-		list = format("%s%s%s", list, i ? ", " : "", part->model->names.coord[i]);
-	return list;
-}
-
 static void emit_tables_of_part(const struct emitter *part)
 {
 	say(part, "\n/* ---- part %d: %s ---- */\n\n", (int)(part->part - part->step->shown->model->switching->part),
-	    names_of_part(part));
+	    name_list(part->model->n, part->model->names.coord));
 	put_wholes(part, false, "state",
 		     "Where the states of the part are in y", part->system->states, part->part->state);
 	if (is_linear_part(part)) {

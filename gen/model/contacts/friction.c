@@ -370,15 +370,6 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 		    form_difference(form_difference(NEW(struct form), force), down ? down : NEW(struct form)));
 }
 
-static struct form *without_atoms(const struct form *form)
-{
-	struct form *rest = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind != BASIS_ATOM)
-			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
-	return rest;
-}
-
 static void stick(struct building *b, const struct switching *s, int index)
 {
 	struct region *region = &s->region[index];
@@ -388,7 +379,7 @@ static void stick(struct building *b, const struct switching *s, int index)
 	if (!region->possible)
 		return;
 	for (int k = 0; k < s->rows; k++)
-		region->residual[s->row[k]] = without_atoms(region->residual[s->row[k]]);
+		region->residual[s->row[k]] = terms_of_kinds(region->residual[s->row[k]], ~(1u << BASIS_ATOM));
 	for (int k = 0; k < count; k++)
 		if (is_borne(&stuck[k]))
 			solve_for_force(s, region, stuck, count, k);

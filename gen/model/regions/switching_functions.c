@@ -131,19 +131,11 @@ static void tear(struct switching *s, const struct node *node)
 
 /* ---- from segment to segment ---- */
 
-static struct form *moving_part(const struct form *form)
-{
-	struct form *part = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_COORD || form->term[i].basis.kind == BASIS_INPUT)
-			form_add_basis(part, form->term[i].basis, form->term[i].factor);
-	return part;
-}
-
 /* Is form what this switching function has become? */
 static bool has_become(const struct switching_function *e, const struct form *form, mpq_ptr of)
 {
-	const struct form *here = moving_part(form), *there = moving_part(e->form);
+	const unsigned moving = 1u << BASIS_COORD | 1u << BASIS_INPUT;
+	const struct form *here = terms_of_kinds(form, moving), *there = terms_of_kinds(e->form, moving);
 	mpq_set_ui(of, 1, 1);
 	return here->terms == 0 ? there->terms == 0 : there->terms > 0 && is_form_multiple(here, there, of);
 }
