@@ -100,7 +100,7 @@ for model; do
 			  print e + 0 }' "$work/truth" -
 	}
 	echo "$model:"
-	for e in 1e-5 1e-7 1e-9 1e-11 1e-13; do
+	for e in 1e-3 1e-5 1e-7 1e-9 1e-11 1e-13; do
 		ours $e
 		count "$work/ours" $units taylor
 		echo "$(error) $count"
