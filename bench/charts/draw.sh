@@ -28,7 +28,7 @@ derive() {
 here=$PWD/$charts
 
 derive precision.csv precision_raw.csv fold -v lists=setting,largest,ns_median \
-	-v by=model,method,family,setting_kind,unit_s,history_s,truth_agreement
+	-v by=model,method,family,setting_kind,unit_s,history_s
 derive precision.csv precision.csv thin
 derive precision_methods.csv precision_raw.csv once -v columns_of=method,family,setting_kind,settings
 derive energy.csv energy_raw.csv fold -v by=case,method,family,real,step_s -v lists=steps,largest

@@ -129,7 +129,7 @@ END
 sh "$made" thin curves.csv >thin.csv 2>log
 sh "$made" thin thin.csv 2>>log | cmp - thin.csv >>log 2>&1
 printf 'setting\n1 3 5\n1 2 4\n1\n1 3\n' | cmp - <<-END >>log 2>&1
-	$(cut -d , -f 8 thin.csv)
+	$(cut -d , -f 7 thin.csv)
 END
 [ ! -s log ]
 result $? 'curves of given times: thinned as by hand, and once more the same'
