@@ -32,4 +32,7 @@ static inline int PL(project_rounded)(const PL_TYPE *s, real tau, real y[PL_STAT
     real low[PL_STATES] = {0};
     return PL(project)(s, tau, y, low);
 }
+#define PL_PUT_BACK(s, tau, y) (void)PL(project_rounded)(s, tau, y)
+#else
+#define PL_PUT_BACK(s, tau, y) (void)(y)
 #endif

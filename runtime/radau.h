@@ -29,6 +29,7 @@
  *     PL(known)(s, tau, inside, segment, start, slope, known)   tau after now; conditions on t hold as at inside
  *     PL(linearize)(known, interval, y, left, jacobian)         highest derivatives at y; and with modes PL(forces)
  *     PL_KIND(i), PL_FLOORS                                     as measure.h
+ *     PL_CONSTRAINTS                                            some hold: PL(misses) of constraints.h
  *
  * Each is a copy of its own, whose numbers of states are constants; no function is called by a pointer. */
 #include "numbers.h"
@@ -230,6 +231,7 @@ static int PL(ends)(const real y[PL_STATES], const real gain[PL_STATES])
 }
 
 #include "interpolant.h"
+#include "constraints.h"
 
 /* ---- the next internal step ---- */
 
@@ -283,6 +285,9 @@ static void PL(commit)(PL_TYPE *s)
     s->leg += s->stop == PL_AT_CHANGE;
 #endif
     s->size = 0;
+#if PL_CONSTRAINTS
+    s->status |= PL(project)(s, PL(since)(s) * PL_H, s->start, s->low);
+#endif
     PL(measure)(s);
 }
 
@@ -527,6 +532,7 @@ static int PL(reach)(PL_TYPE *s, const real u[], real end, real y[PL_STATES])
     }
     if (!wrong) {
         PL(inside)(s, ahead, y);
+        PL_PUT_BACK(s, end * PL_H, y);
         return 0;
     }
     for (i = 0; i < PL_STATES; i++) {
@@ -566,6 +572,7 @@ static void PL(between)(const PL_TYPE *s, const real u[], real tau, real y[PL_ST
     const real ahead = (((real)s->back + tau / PL_H) - s->at) - s->at_low;
     if (ahead <= s->size && s->size > 0) {
         PL(inside)(s, ahead, y);
+        PL_PUT_BACK(s, tau, y);
     } else {
         PL_TYPE copy = *s;
         PL(reach)(&copy, u, tau / PL_H, y);

@@ -41,6 +41,18 @@ static PL_APART real PL(least_size)(const real y[], int i)
 }
 #endif
 
+#if PL_KINDS && PL_CONSTRAINTS
+/* 1 over what counts of state i that was always 0: of what its kind gains first. By itself it may gain no more than
+ * what rounding leaves of forces that constraints bear; 0: its own gain is larger, or there is none. */
+static inline real PL(unit_of_gain)(const real c[PL_ORDER + 1][PL_COLUMNS], int i)
+{
+    const real one = pl_magnitude(c[1][i]), two = pl_magnitude(c[2][i]), own = one > two ? one : two;
+    const real first = PL(least_size)(c[1], i), second = PL(least_size)(c[2], i);
+    const real least = first > second ? first : second;
+    return least > own ? PL(one_over)(least, 0) : 0;
+}
+#endif
+
 /* 1 over the size that counts for column i at the start of the series, or where that is 0 of what it gains first */
 static inline real PL(unit_at)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS], int i)
 {
@@ -58,6 +70,9 @@ static inline real PL(unit_at)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_C
     if (unit == 0 && i < PL_STATES) {
         const real least = PL(least_size)(c[0], i);
         unit = least > now ? PL(one_over)(least, 0) : unit;
+#if PL_CONSTRAINTS
+        unit = unit == 0 && now == 0 ? PL(unit_of_gain)(c, i) : unit;
+#endif
     }
 #endif
     return unit == 0 ? PL(one_over)(now > one ? now : one > two ? one : two, 1) : unit;
@@ -167,8 +182,12 @@ static int PL(meets)(const PL_TYPE *s, const real start[], const real slope[], r
                 large = least > large ? least : large;
             }
 #endif
-            if (!(pl_magnitude(left[i] - along) * theta <= 2 * PL_ORDER * PL_TOLERANCE * large +
-                                                          PL_SLOPE_ROUNDED * pl_magnitude(left[i]) * theta)) {
+            real rounded = PL_SLOPE_ROUNDED * pl_magnitude(left[i]);
+#if PL_KINDS && PL_CONSTRAINTS
+            /* What constraints bear is 0 by differences of what others of its kind get. */
+            rounded += PL_SLOPE_ROUNDED * 16384 * PL(least_size)(left, i);
+#endif
+            if (!(pl_magnitude(left[i] - along) * theta <= 2 * PL_ORDER * PL_TOLERANCE * large + rounded * theta)) {
                 return 0;
             }
         }

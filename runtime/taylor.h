@@ -52,12 +52,7 @@ static inline void PL(inputs_now)(const PL_TYPE *s, const real u[], real start[]
 }
 #endif
 
-#if PL_CONSTRAINTS
 #include "constraints.h"
-#define PL_PUT_BACK(s, tau, y) (void)PL(project_rounded)(s, tau, y)
-#else
-#define PL_PUT_BACK(s, tau, y) (void)(y)
-#endif
 
 /* ---- the sum of a series ---- */
 
@@ -188,6 +183,13 @@ static int PL(reach)(const PL_TYPE *s)
 static inline real PL(unit_so_far)(const PL_TYPE *s, int i)
 {
     const real one = pl_magnitude(s->series[1][i]), two = pl_magnitude(s->series[2][i]);
+#if PL_KINDS && PL_CONSTRAINTS
+    const real least = s->unit[i] == 0 && i < PL_STATES
+                           ? PL(unit_of_gain)((const real (*)[PL_COLUMNS])s->series, i) : 0;
+    if (least > 0) {
+        return least;
+    }
+#endif
     return s->unit[i] == 0 ? PL(one_over)(one > two ? one : two, 1) : s->unit[i];
 }
 
@@ -238,6 +240,11 @@ static int PL(agrees)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS],
         if (PL_KINDS && s->unit[i] > 0 && large * s->unit[i] < 1) {
             large = 1 / s->unit[i];
         }
+#if PL_KINDS && PL_CONSTRAINTS
+        if (s->unit[i] == 0 && large < PL(least_size)(d[0], i)) {
+            large = PL(least_size)(d[0], i);
+        }
+#endif
         if (!(pl_magnitude(along - d[1][i]) * size <= PL_ORDER * PL_TOLERANCE * large + PL_STATE_ROUNDED * most)) {
             return 0;
         }

@@ -239,6 +239,34 @@ static const struct node *node_of_row(const struct solving *w, int row)
 	return row >= w->coords ? w->s->constraint[row - w->coords].statement->value : atom ? atom->node : NULL;
 }
 
+/* Whether some coordinate has no mass of its own, in whatever state */
+static bool lacks_mass(const struct solving *w, int n, const int *order)
+{
+	bool lacks = false;
+	for (int i = 0; i < n; i++)
+		lacks = lacks || (order[i] < w->coords && w->M[row_of(w, order[i]) * w->n + order[i]]->terms == 0);
+	return lacks;
+}
+
+/* To the row of a coordinate G^T times those of its constraints, which are 0: M + G^T G has pivots where M has none. */
+static void add_constraints(struct solving *w, int n, const int *order, int i, const struct form **M,
+			    const struct form **f, const struct form **F)
+{
+	struct collector *c = &w->b->collector;
+	for (int k = 0; k < n && order[i] < w->coords; k++) {
+		const struct form *slope = M[k * n + i];
+		const struct node *node = order[k] < w->coords ? NULL : node_of_row(w, row_of(w, order[k]));
+		if (!node || slope->terms == 0)
+			continue;
+		for (int j = 0; j < n; j++) {
+			const struct form *other = order[j] < w->coords ? M[k * n + j] : NEW(struct form);
+			M[i * n + j] = form_sum(M[i * n + j], kept_product(c, node, slope, other), false);
+		}
+		f[i] = form_sum(f[i], kept_product(c, node, slope, f[k]), false);
+		F[i] = form_sum(F[i], kept_product(c, node, slope, F[k]), false);
+	}
+}
+
 static void solve_block(struct solving *w, int block)
 {
 	SCRATCH int *order = ARRAY(int, w->n);
@@ -257,6 +285,8 @@ static void solve_block(struct solving *w, int block)
 					     .order = highest_order(w->b, order[i]) };
 		node = node ? node : node_of_row(w, row);
 	}
+	for (int i = 0; i < n && lacks_mass(w, n, order); i++)
+		add_constraints(w, n, order, i, M, f, F);
 	struct written_system *written = NEW(struct written_system);
 	*written = (struct written_system){ n, highest, F };
 	const struct linear_system e = { n, M, f, written };

@@ -262,7 +262,7 @@ static void emit_include(const struct emitter *e)
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
 		   { "WAYS", d ? d->functions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
-		   { "FLOORS", has_floors(e) });
+		   { "FLOORS", has_floors(e) }, { "CONSTRAINTS", e->model->equations.correction != NULL });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (has_switching(e))
@@ -301,6 +301,7 @@ void emit_collocation_step(const struct emitter *e)
 	if (switches(e))
 		emit_series_beside(e);
 	emit_arguments(e);
+	emit_constraints(e);
 	emit_include(e);
 	emit_step_function(e);
 }
