@@ -484,12 +484,12 @@ static void banner_board(const struct emitter *e)
 static void banner_cost(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
-	if (e->step->collocation)
-		banner_sentence(e, e->step->taylor.expansion ? "One series, which may serve several steps:"
-				: "One iteration of Newton's method, of which an internal step takes two to four:");
-	say(e, "%s * One step of h = %s s, form %s: %d multiplications, %d additions",
-	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), step_form_text(e->step),
-	    program->multiplications, program->additions);
+	const char *of = !e->step->collocation ? format("form %s", step_form_text(e->step))
+		       : e->step->taylor.expansion ? "a series, which may serve several steps"
+		       : "an iteration of Newton's method, of which an internal step takes two to four";
+	say(e, "%s * One step of h = %s s, %s:%s%d multiplications, %d additions",
+	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), of,
+	    e->step->collocation ? "\n * " : " ", program->multiplications, program->additions);
 	if (e->step->refresh)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
 		    e->step->refresh->steps, program->forcing_multiplications, program->forcing_additions);

@@ -153,7 +153,7 @@ static void declare_tables(const struct emitter *e)
 		declare_model(e);
 	if (tells_tolerance(e))
 		announce(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
-			"by how much a step may miss each state; 0: it has an absolute tolerance");
+			"error that a step may make in each state; 0: the absolute tolerance alone counts");
 }
 
 /* In which order they are called, and what fails how */

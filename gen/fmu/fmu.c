@@ -58,7 +58,8 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 	const struct linear *system = &step->branch->system;
 	const char *name = f->name;
 	return format("/* SPDX-License-Identifier: MIT-0 */\n"
-		      "/* Which model plfmu.h makes an FMU of: made by plgen " PLGEN_VERSION "; do not edit. */\n"
+		      "/* The model that plfmu.h makes an FMU of, its sizes and constants: made by plgen " PLGEN_VERSION
+		      "; do not edit. */\n"
 		      "#ifndef FMU_MODEL_H\n"
 		      "#define FMU_MODEL_H\n\n"
 		      "#define FMI%d_FUNCTION_PREFIX %s_\n\n"

@@ -43,7 +43,7 @@ FMI2_Export fmi2Status FMI2(SetDebugLogging)(fmi2Component c, fmi2Boolean loggin
     return c ? status_of(fmu_logging((fmu_instance *)c, loggingOn != 0, nCategories, categories)) : fmi2Error;
 }
 
-/* Before there is an instance: so an error is told as if it had been */
+/* No instance says yet which categories the importer wants to see: an error is always logged. */
 static fmi2Component refused(const fmi2CallbackFunctions *functions, fmi2String name, const char *why)
 {
     if (functions && functions->logger) {

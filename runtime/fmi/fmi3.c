@@ -37,7 +37,7 @@ FMI3_Export fmi3Status FMI3(SetDebugLogging)(fmi3Instance instance, fmi3Boolean 
     return instance ? status_of(fmu_logging((fmu_instance *)instance, loggingOn, nCategories, categories)) : fmi3Error;
 }
 
-/* Before there is an instance: so an error is told as if it had been */
+/* No instance says yet which categories the importer wants to see: an error is always logged. */
 static fmi3Instance refused(fmi3LogMessageCallback logMessage, fmi3InstanceEnvironment environment, const char *why)
 {
     if (logMessage) {

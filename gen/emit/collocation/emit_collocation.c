@@ -40,16 +40,16 @@ static int rows(const struct emitter *e)
 
 void emit_collocation_members(const struct emitter *e)
 {
-	say(e, "    double start[$N_STATES], poly[%d][$c];  /* start of an internal step; its polynomial, "
-	       "from time^1 on in row 1 */\n"
+	say(e, "    double start[$N_STATES], poly[%d][$c];  /* start of an internal step; its polynomial in "
+	       "time, row k of time^k */\n"
 	       "    double gain[$N_STATES];  /* change of the state over the internal step */\n"
 	       "    double at, at_low;  /* its start, in h after the step k - back */\n"
-	       "    double size, per;     /* its length in h; reciprocal of the polynomial's unit of time */\n"
+	       "    double size, per;     /* its length in h; the polynomial's time is per (t - start)/h */\n"
 	       "    double want;          /* proposed length of the next, in h */\n"
 	       "    double scale[$c], unit[$c];  /* largest size of each state so far; its reciprocal */\n"
 	       "    int back;             /* steps of h since then */\n"
-	       "    int stop, ready;      /* it ends at 1: a step of h, 2: a change of the loads%s; it may be "
-	       "extrapolated */\n",
+	       "    int stop, ready;      /* where it ends, 1: a step of h, 2: a change of the loads%s; its polynomial "
+	       "may be extrapolated */\n",
 	    rows(e), has_switching(e) ? ", 3: a crossing" : "");
 	if (loads_change(e->system))
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
@@ -69,7 +69,7 @@ void emit_collocation_place(const struct emitter *e)
 {
 	emit_state_table(e);
 	emit_floors(e);
-	say(e, "\nstatic void $n_place($n *s);\n");
+	say(e, "\nstatic void $n_place($n *s);  /* what follows from a state that was set */\n");
 }
 
 /* ---- what the collocation is told ---- */

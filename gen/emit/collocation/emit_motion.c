@@ -322,7 +322,7 @@ static void emit_known(const struct emitter *e, const struct reads *r)
 	for (int i = 0; i < known.count; i++)
 		say(e, "    node[%d] = %s;\n", i, known_text(e, &known.of[i]));
 	if (!known.count)
-		say(e, "    node[0] = 0.0;  /* nothing */\n");
+		say(e, "    node[0] = 0.0;  /* the equations read none of them */\n");
 	close_function(e, "s tau inside segment u slope");
 }
 
