@@ -85,7 +85,7 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	return spec;
 }
 
-/* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and it is told
+/* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and a note says
  * why. What stands in the way of any is said by the last. */
 static bool make_of(struct work *w, const struct source *source)
 {

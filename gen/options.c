@@ -443,7 +443,7 @@ static void note_flag(struct options *options, const char *option, bool is)
 		note_in_banner(options, option);
 }
 
-/* Those that change the model come as they are given; these in one order, so that they are told alike. */
+/* Those that change the model come as they are given; these in one order, so that the banner has them alike. */
 static void note_all(struct options *options)
 {
 	const struct request *request = &options->request;

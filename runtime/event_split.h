@@ -5,7 +5,7 @@
  * file of each model, which defines before it what chosen.h asks, and
  *
  *     PL_STATES, PL_ACTING, PL_FORCES   of x, which is the states, what acts on them (load states, inputs, slopes of
- *                                inputs), and each force that is left over with two derivatives
+ *                                inputs), and each force of the remainder with two derivatives
  *     PL_FASTEST                 the sizes |A| have no larger pole [1/s]
  * PL_FAST_PATH, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
  *     PL_CARRIES                 entries of the member carry, which a step changes

@@ -306,7 +306,7 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     decide_anew(m, &at, 1);
 }
 
-/* What is beyond the guard of a bounce by more than rounding is told. */
+/* What is beyond the guard of a bounce by more than rounding is reported. */
 static void check_places(const pl_guards *m, const instant *at)
 {
     const int n = m->size;

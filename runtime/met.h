@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* met.h: impacts, contacts at rest and friction in a part of a step, part of event_split.h: of what is watched the
  * cubics through values and slopes at both ends are looked at as passage.h looks at the polynomials of a collocation;
- * at an event the law of events.c is asked of a series there.  What holds is a force like others that are left over, to
+ * at an event the law of events.c is asked of a series there.  What holds is a force like others of the remainder, to
  * the order of the scheme: behind each part what is held is put back. */
 
 /* ---- where a part begins, and along it ---- */

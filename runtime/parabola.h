@@ -12,7 +12,7 @@
  *     PL_BARE                    the step that looks for no peaks
  *     PL_CHOICE(s, u)            operator that serves
  *
- *     PL(vector_now)(s, u, x)              x at the start of the step, nothing left over
+ *     PL(vector_now)(s, u, x)              x at the start of the step, without the remainder
  *     PL(go_on)(s, which, tau, x)          e^{A tau} x
  *     PL(left_at)(s, which, point, u, y, left)   the remainder at state y */
 #include "numbers.h"

@@ -3,7 +3,7 @@
  * remainder; loads and inputs act exactly.  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with member y
- *     PL_STATES, PL_FORCES       states; forces that are left over
+ *     PL_STATES, PL_FORCES       states; forces of the remainder
  *     PL_DRIVEN                  1: loads and inputs have a part in them
  *     PL_EVENT_SPLIT                     1: a step of event_split.h, of the forces of given intervals, which that says
  *

@@ -66,7 +66,7 @@ static pl_two number_of(const pl_formulas *f, const real *params, const pl_two *
     return i < f->constants ? f->constant[i] : made[i - f->constants];
 }
 
-/* Off, measured over 6 10^4 sets of equations, by 2^-103.7 and in floats 2^-45.9 of what the bound is told of. */
+/* Off, measured over 6 10^4 sets of equations, by 2^-103.7 and in floats 2^-45.9 of what the bound is given. */
 int pl_formulas_at(const pl_formulas *f, const real *params, pl_two *made)
 {
     int i;

@@ -6,7 +6,7 @@
 #include "real.h"
 
 #if defined __FINITE_MATH_ONLY__ && __FINITE_MATH_ONLY__ > 0
-#error "what overflows is told by its infinity: compile it without -ffinite-math-only"
+#error "overflow shows as an infinity: compile it without -ffinite-math-only"
 #endif
 
 #ifdef REAL_IS_FLOAT

@@ -65,7 +65,7 @@ enum {
 	LIMIT_NEED_STATES = 128,    /* of a model with needs */
 	LIMIT_MODES = 128,          /* of a scheme in normal modes */
 	LIMIT_WITHIN = 1000,        /* radians of a mode in a step that has values inside: as many series */
-	LIMIT_SHAPES = 40,          /* coordinates of a model whose mode shapes are told */
+	LIMIT_SHAPES = 40,          /* coordinates of a model whose mode shapes are reported */
 	LIMIT_TRANSFERS = 24,       /* states of one whose transfer functions are, */
 	LIMIT_SWEPT = 64,           /* states of one that is swept */
 	LIMIT_SAMPLES = 1000000,    /* in a period of a sweep */
@@ -76,7 +76,7 @@ enum {
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */
 	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
-	LIMIT_ERRORS = 100,         /* told before the rest is not looked at */
+	LIMIT_ERRORS = 100,         /* reported before the rest is not looked at */
 	/* of an expression in operations, through params and lets; a function of many arguments counts as many */
 	LIMIT_DEPTH = 10000,
 	LIMIT_TERMS = 10000000,     /* of forms, made on the way to the equations */
@@ -196,7 +196,7 @@ struct source {
 	const char *text;           /* ends with a 0 byte that does not count */
 	size_t length;
 	int order;                  /* in which they were opened: the spec first */
-	bool repeats;               /* a part, in the model as often as it is used: of a place the first is told */
+	bool repeats;               /* a part, in the model as often as it is used: of a place the first is reported */
 };
 struct place {
 	const struct source *source;

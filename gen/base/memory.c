@@ -37,7 +37,7 @@ static struct slab *slabs;
 static struct cell *free_cells[KINDS];   /* blocks of up to so many times CELL */
 static char *unsplit, *end_of_slab;
 static size_t held, terms;          /* bytes now; terms so far */
-static bool over;                   /* a budget is spent, and that is being told */
+static bool over;                   /* a budget is spent, and that is being reported */
 
 static _Noreturn void out_of_memory(void)
 {

@@ -32,7 +32,7 @@ static void say(struct place at, const char *severity, const char *note, const c
 	char *message = ARRAY(char, length + 1);
 	vsnprintf(message, (size_t)length + 1, fmt, again);
 	va_end(again);
-	for (int i = 0; i < said_count; i++)    /* a let that two equations use is told once */
+	for (int i = 0; i < said_count; i++)    /* a let that two equations use is reported once */
 		if (said[i].at.offset == at.offset && strcmp(said[i].at.source->name, at.source->name) == 0 &&
 		    (strcmp(said[i].message, message) == 0 ||
 		     (at.source->repeats && strcmp(said[i].severity, severity) == 0)))
@@ -327,7 +327,7 @@ struct source *source_argument(const char *text)
 	return source_new("<command line>", "command line", format("%s", text), strlen(text));
 }
 
-/* Text that is no text is told at its first bad byte, before any statement is looked at. */
+/* Text that is no text is reported at its first bad byte, before any statement is looked at. */
 static bool check_text(const struct source *source)
 {
 	size_t line = 0;

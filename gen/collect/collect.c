@@ -453,7 +453,7 @@ static struct value *collect_name(struct collector *c, struct node *node)
 		return collect_tuned(c, node);
 	if (symbol->made.progress == COLLECTING && symbol->kind == SYMBOL_PARAM)
 		error(node->at, NULL, "param '%s' is defined by itself", symbol->name);
-	if (symbol->made.progress == COLLECTING)     /* a let that failed before: that was told */
+	if (symbol->made.progress == COLLECTING)     /* a let that failed before: that was reported */
 		abandon();
 	if (symbol->made.progress != COLLECTED)
 		collect_value(c, symbol);
@@ -529,7 +529,7 @@ static unsigned mode_of(const struct collector *c)
 	       c->vanishes << 10 | (unsigned)c->params << 7;
 }
 
-/* Cells of values are shared: nobody changes them. What has become a rational is told by those that are collected, so
+/* Cells of values are shared: nobody changes them. What has become a rational is known by those that are collected, so
  * it is not kept. */
 static struct value *collect_node(struct collector *c, struct node *node)
 {

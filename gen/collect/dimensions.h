@@ -49,7 +49,7 @@ struct dimensions {
 	struct assertion *assertion;
 	int depth;
 	int statements;
-	const void **failed;        /* an error was told of them */
+	const void **failed;        /* an error was reported of them */
 	const void *statement;      /* that is looked at */
 };
 

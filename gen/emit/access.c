@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* init, set, get, time, status, hold: what access.h is told of the model. */
+/* init, set, get, time, status, hold: what access.h is given of the model. */
 #include "declarations.h"
 #include "state.h"
 #include "steps.h"

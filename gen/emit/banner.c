@@ -486,10 +486,10 @@ static void banner_cost(const struct emitter *e)
 	const struct program *program = e->step->program;
 	const char *of = !e->step->collocation ? format("form %s", step_form_text(e->step))
 		       : e->step->taylor.expansion ? "a series, which may serve several steps"
-		       : "an iteration of Newton's method, of which an internal step takes two to four";
-	say(e, "%s * One step of h = %s s, %s:%s%d multiplications, %d additions",
+		       : "an iteration of Newton's method,\n * of which an internal step takes two to four";
+	say(e, "%s * One step of h = %s s, %s: %d multiplications, %d additions",
 	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), of,
-	    e->step->collocation ? "\n * " : " ", program->multiplications, program->additions);
+	    program->multiplications, program->additions);
 	if (e->step->refresh)
 		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
 		    e->step->refresh->steps, program->forcing_multiplications, program->forcing_additions);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_run: what run.h is told; tables and functions of the blocks of rows that it takes at once. */
+/* NAME_run: what run.h is given; tables and functions of the blocks of rows that it takes at once. */
 #include "declarations.h"
 #include "emit/series/series.h"
 #include "steps.h"

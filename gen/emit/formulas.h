@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Forms with atoms as C, and what a scheme leaves over. */
+/* Forms with atoms as C, and the nonlinear remainder. */
 #ifndef PLGEN_EMIT_FORMULAS_H
 #define PLGEN_EMIT_FORMULAS_H
 
@@ -26,7 +26,7 @@ struct reads reads_of_formulas(const struct formulas *f);         /* of what is 
 void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */
 void emit_formulas(struct formulas *f, int indent);
 
-/* ---- remainder.c: what a scheme leaves over, as a function ---- */
+/* ---- remainder.c: the nonlinear remainder, as a function ---- */
 
 bool any_of(const bool *flag, int count);
 /* What a remainder, an operator, is handed in a step: samples at its start, their slopes [1/s] */
@@ -34,7 +34,7 @@ const char *samples_of_step(const struct emitter *e);
 /* A call at a node of the step, and one in the outputs, into `left` */
 const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left);
 const char *remainder_of_outputs(const struct emitter *e);
-/* Does an output read an acceleration that something left over acts on? */
+/* Does an output read an acceleration that the remainder acts on? */
 bool reads_force_columns(const struct model *model);
 void emit_remainder(const struct emitter *e);                      /* and of a schedule the choice of an operator */
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Eigenvalues, and equations solved, in double precision: to begin with, to choose by, or to tell a user. */
+/* Eigenvalues, and equations solved, in double precision: to begin with, to choose by, or to report. */
 #include "math/math.h"
 
 #include <complex.h>

@@ -21,7 +21,7 @@ enum {
 
 struct iteration {                  /* of one factor */
 	int degree, bits;
-	bool expected, started;     /* z was told from outside; the iteration has begun */
+	bool expected, started;     /* z was given from outside; the iteration has begun */
 	mpc_t *z;
 	struct rectangle *center;   /* z as degenerate rectangles */
 	mpfr_t *radius;             /* upper bounds */

@@ -43,7 +43,7 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct residual *residual;
 	struct form **element;      /* per element of the network: its force */
 	struct value **output;      /* per output statement; NULL: not linear */
-	struct impact_law **impact_law; /* per `when` and stop; NULL: it has been told */
+	struct impact_law **impact_law; /* per `when` and stop; NULL: its error was reported */
 	int masses;                 /* blocks of equations in which the mass matrix moves */
 	struct moving_mass { const struct node *node; struct linear_system system; } *mass;
 	struct constraint *constraint; /* one per multiplier */
@@ -75,7 +75,7 @@ void find_delays(struct building *b);                       /* model->delays; af
 
 void fill_states(struct building *b, const struct segment_equations *rows); /* M, C, K, inputs */
 /* Tunable params that the instance has, at the spec's values: what is linear there belongs to the linear core, and the
- * difference is left over. Itself, where it reads none. */
+ * difference is in the remainder. Itself, where it reads none. */
 const struct form *nominal_form(struct building *b, const struct form *form);
 /* Whether what params multiply is parted so for inputs and loads too: a series puts both together again */
 bool parts_params(const struct building *b);

@@ -58,7 +58,7 @@ void linearise(void *building);                             /* fills in model->e
 
 void lint(struct building *b);
 
-/* ---- warnings.c: what a spec may say but is better told about ---- */
+/* ---- warnings.c: what a spec may say but is better warned of ---- */
 
 void warn(struct building *b);
 

@@ -128,7 +128,7 @@ static const struct node *find_in_equations(const struct spec *spec, int coord, 
 	const struct node *found = NULL;
 	for (int i = 0; i < spec->equations && !found; i++) {
 		if (!spec->equation[i].right)
-			continue;               /* broken: it has been told */
+			continue;               /* broken: its error was reported */
 		found = find_derivative(spec->equation[i].left, coord, primes);
 		found = found ? found : find_derivative(spec->equation[i].right, coord, primes);
 	}
@@ -230,7 +230,7 @@ static const char *missing_name(const struct building *b, int coord)
 						    : format("%s''", b->model->names.coord[coord]);
 }
 
-/* Of a part, or of the assembly's own: counted and told where its text ends */
+/* Of a part, or of the assembly's own: counted and reported where its text ends */
 static void report_missing(const struct building *b, int missing, int all)
 {
 	const struct symbol *symbol = b->model->frame.coord[missing];

@@ -91,7 +91,7 @@ static void evaluate_params(struct building *b)
 	b->collector.constant_only = false;
 }
 
-/* A let that nothing linear uses may be anything; but a division by zero in it is told all the same. */
+/* A let that nothing linear uses may be anything; but a division by zero in it is reported all the same. */
 static void evaluate_lets(struct building *b)
 {
 	b->collector.tolerant = true;
@@ -103,7 +103,7 @@ static void evaluate_lets(struct building *b)
 
 /* ---- scheme and step ---- */
 
-/* Without a scheme: exact where the model allows it, which the equations tell. */
+/* Without a scheme: exact where the model allows it, by the equations. */
 static void choose_scheme(void *context)
 {
 	struct building *b = context;

@@ -263,7 +263,7 @@ static bool reads_too_high(const struct model *model, bool *seen, const struct f
 	return false;
 }
 
-/* Whether it is good; else it has been told. */
+/* Whether it is good; else its error was reported. */
 static bool check_output(const struct model *model, const struct output *output)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));

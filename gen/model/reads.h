@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What forms read, and how they are told. */
+/* What forms read, and how they are printed. */
 #ifndef PLGEN_MODEL_READS_H
 #define PLGEN_MODEL_READS_H
 

@@ -11,7 +11,7 @@ struct relative;
 struct target;
 
 struct building;
-struct again {                      /* to build a model a second time, for builders; then nothing is told again */
+struct again {                      /* to build a model a second time, for builders; then nothing is reported again */
 	/* values of the tunable params in place of the spec's, to see what the equations become: no step, no initial
 	 * values */
 	const mpq_t *tunable;

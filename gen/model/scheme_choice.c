@@ -163,7 +163,7 @@ bool is_linear(const struct building *b)
 	return true;
 }
 
-/* In one interval, loads with the spec's values of params; what is more by other values is left over. */
+/* In one interval, loads with the spec's values of params; what is more by other values is in the remainder. */
 static void part_nominal_loads(struct building *b, int row, const struct form *full)
 {
 	const struct form *here = form_at(point_new(&b->collector, 0, NULL), full), *known = nominal_form(b, here);
@@ -172,8 +172,8 @@ static void part_nominal_loads(struct building *b, int row, const struct form *f
 }
 
 /* What depends on time alone, in each interval of time: t < 1 ? ... has one formula there. What is then still no load,
- * such as sqrt(t), is left over if it is the same in all intervals; if it is not, all that is no plain load for all
- * time is. */
+ * such as sqrt(t), is in the remainder if it is the same in all intervals; if it is not, all that is no plain load for
+ * all time is. */
 static void part_loads(void *context)
 {
 	struct building *b = context;
@@ -263,7 +263,7 @@ static void find_obstacle(void *context)
 }
 
 /* The first scheme to try where exact is not possible and none was asked for. What is smooth has its Taylor series; an
- * operator, and loads that are left over, have been written for schemes that take the equations apart: of many states
+ * operator, and loads in the remainder, have been written for schemes that take the equations apart: of many states
  * in normal modes. */
 static enum scheme scheme_of_choice(const struct building *b)
 {
@@ -318,7 +318,7 @@ static void choose_beside_contacts(void *context)
 	find_contacts(context);
 }
 
-/* Loads are not left over, where that is asked for in vain. */
+/* Loads are not in the remainder, where that is asked for in vain. */
 static void keep_loads(struct building *b, const char *why)
 {
 	if (!b->request->loads_left)

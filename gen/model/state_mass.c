@@ -420,7 +420,7 @@ mpq_t *inverse_masses(const struct building *b, const struct segment_equations *
 				mpq_set(matrix[term->basis.order][i * n + term->basis.index], term->factor);
 		}
 	if (!leading_inverse(&shape, inverse, &column))
-		abandon();                      /* told with the equations */
+		abandon();                      /* reported with the equations */
 	return inverse;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a spec may say but is better told about. */
+/* What a spec may say but is better warned of. */
 #include "building.h"
 #include "model/contacts/contacts.h"
 #include "capability.h"

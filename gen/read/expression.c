@@ -383,7 +383,7 @@ static struct node *read_operand(struct parser *p)
 		node->end = p->end;
 		return node;
 	}
-	if (is_reserved(name.name) && !find_symbol(p, name.name))   /* else broken: told where it is declared */
+	if (is_reserved(name.name) && !find_symbol(p, name.name))   /* else broken: reported where it is declared */
 		error(name.at, NULL, "'%s' is a reserved word", name.name);
 	struct node *node = resolve_name(p, name);
 	bool input = node->symbol && node->symbol->kind == SYMBOL_INPUT;

@@ -57,7 +57,7 @@ static void skip_space(struct lexer *lexer)
 	}
 }
 
-/* Everything that could belong to a number is taken, so that 1.2.3 and 2x are told as what they are. */
+/* Everything that could belong to a number is taken, so that 1.2.3 and 2x are reported as what they are. */
 static size_t number_extent(const char *text)
 {
 	size_t length = 0;

@@ -89,7 +89,7 @@ static void read_equation(struct parser *p)
 	check_statement_word(p);
 	struct spec *spec = p->spec;
 	struct equation equation = { .at = p->token.at, .part = p->part };
-	spec->equations++;                      /* counted even if broken: its absence is not to be told as well */
+	spec->equations++;                      /* counted even if broken: its absence is not to be reported as well */
 	ENLARGE(spec->equation, (size_t)spec->equations);
 	spec->equation[spec->equations - 1] = equation;
 	equation.left = read_expression(p);
@@ -114,12 +114,12 @@ static void read_statement(void *context)
 	p->end = p->token.at;
 	const struct statement *statement = statement_of(p, p->token);
 	if (!p->own->name && !(statement && statement->read == read_model)) {
-		p->own->name = "";              /* told once */
+		p->own->name = "";              /* reported once */
 		error(p->token.at, "a spec begins with its name: model NAME",
 		      "expected the statement 'model', found %s", token_text(p->token));
 	}
 	if (!p->own->name)
-		p->own->name = "";              /* should its statement fail, that is told */
+		p->own->name = "";              /* should its statement fail, that is reported */
 	if (!statement) {
 		read_equation(p);
 	} else {
@@ -145,7 +145,7 @@ void declare_quietly(struct parser *p, struct token name, enum symbol_kind kind)
 }
 
 /* The statement that starts at `from`, or that its misspelt first word is meant for. Nothing is lexed: what cannot be
- * has been told, and no guard stands around this. */
+ * has been reported, and no guard stands around this. */
 static const struct statement *failed_statement(const struct parser *p, size_t from, size_t *after)
 {
 	const char *text = p->lexer.source->text + from;
@@ -163,7 +163,7 @@ static const struct statement *failed_statement(const struct parser *p, size_t f
 	return NULL;
 }
 
-/* The names that a failed statement would have declared are known but broken, so that their use is not told as well. */
+/* The names that a failed statement would have declared are known but broken: their use is not reported as well. */
 static void declare_what_failed(struct parser *p, size_t from)
 {
 	const char *text = p->lexer.source->text;

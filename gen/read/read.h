@@ -120,7 +120,7 @@ struct symbol_value {               /* its `value`, collected */
 	struct value *value;        /* if COLLECTED */
 	struct span span;           /* when it holds, */
 	bool irrational;            /* something in it has become a rational */
-	const struct form *full;   /* of a scalar let: its value for all time, where something is left over */
+	const struct form *full;   /* of a scalar let: its value for all time, where there is a remainder */
 };
 struct symbol {
 	enum symbol_kind kind;
@@ -243,7 +243,7 @@ struct assembly_part {                    /* of an assembly: a spec in it, as of
 	struct place at;            /* what names it */
 	const struct source *source;
 	const struct assembly_part *inside; /* another part; NULL: the assembly */
-	bool broken;                /* it was told what is wrong */
+	bool broken;                /* what is wrong was reported */
 	bool unobservable;          /* by any output: not in the model */
 	const char *aside;          /* statements of its text that an assembly does not read; "": none */
 	int bindings;
@@ -307,7 +307,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct symbol **bucket;         /* the same by name */
 	struct spec_counts count;
 	struct assembly assembly;
-	bool lacks_coords;          /* there is no coordinate, and that was told */
+	bool lacks_coords;          /* there is no coordinate, and that was reported */
 	int equations;
 	struct equation *equation;
 	int elements;
@@ -395,7 +395,7 @@ void read_parts_from(const char *folder);                   /* those that come w
 const char *written_text(const struct assembly_part *part, struct place at, struct place end);
 /* of the statement of an energy; NULL: that of the one before it */
 const char *energy_text(const struct spec *spec, int index);
-/* axle.spec as front, rear; NULL: it is told with a part before it */
+/* axle.spec as front, rear; NULL: it is reported with a part before it */
 const char *parts_text(const struct spec *spec, int index);
 
 /* ---- names.c: words with a meaning of their own ---- */
@@ -433,7 +433,7 @@ struct scheme_row {
 	int order;                  /* in h, where all is smooth; 0: exact */
 	const char *method;         /* what it does, for the banner; NULL: exact */
 	const char *citation;       /* of its recipe */
-	bool leaves;                /* a quadrature of its own treats what it leaves over */
+	bool leaves;                /* a quadrature of its own treats its nonlinear remainder */
 	bool by_default;            /* where exact is not possible and no scheme is asked for */
 	bool holds_coupling;        /* over the step: A is each coordinate's own terms, of linear models too */
 	bool holds_remainder;        /* over the step: there is a value of its order at any time between steps */
@@ -442,7 +442,7 @@ struct scheme_row {
 	bool expands;               /* the whole right side, nothing taken out: as a Taylor series in time, */
 	bool collocates;            /* or by collocation, which bears stiffness; */
 	bool switches;              /* or by both, as the stiffness is */
-	bool modes;                 /* in normal modes of symmetric operators; loads are left over too */
+	bool modes;                 /* in normal modes of symmetric operators; loads are in the remainder too */
 	int points;                 /* of an exponential multistep method: past forces that a step reads */
 	int stages;                 /* of collocation in modes, where no number is given; 0: it is none */
 	/* Stability: where the operator's squared frequencies are below the model's by d, the state grows at h d over

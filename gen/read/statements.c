@@ -15,7 +15,7 @@ struct token expect_new_name(struct parser *p, const char *what)
 	return take(p);
 }
 
-/* Names that differ in a point for a _ are one in C. Told where the assembly makes them meet. */
+/* Names that differ in a point for a _ are one in C. Reported where the assembly makes them meet. */
 static void check_name_in_c(const struct parser *p, const char *name, struct place at)
 {
 	for (const struct symbol *s = p->spec->bucket[name_hash(name) % BUCKETS]; s; s = s->next_alike) {
@@ -435,7 +435,7 @@ void read_scheme(struct parser *p)
 	enum scheme scheme;
 	bool counts = scheme_of(name.name, &scheme) && (scheme_row(scheme)->expands || scheme_row(scheme)->stages);
 	if (p->token.kind == TOKEN_NUMBER || (counts && p->token.kind != TOKEN_END))
-		/* a number behind another scheme is told later */
+		/* a number behind another scheme is reported later */
 		p->own->request.order = take_order(p, &p->own->request.over);
 	expect_end(p);
 	p->own->request.scheme = name.name;

@@ -179,7 +179,7 @@ _Noreturn void peak_inside(struct place at)
 	      "peak stands alone: output NAME = peak(EXPR)");
 }
 
-/* Then it was told what is wrong. */
+/* Then what is wrong was reported. */
 static bool is_of_broken_part(const struct parser *p, const char *name)
 {
 	for (const char *point = name; (point = strchr(point, '.')); point++) {
@@ -220,7 +220,7 @@ static bool lacks_coordinates(const struct parser *p, struct token name)
 	return false;
 }
 
-/* Told once, at the first of them */
+/* Reported once, at the first of them */
 static _Noreturn void missing_coordinates(struct parser *p, struct token name)
 {
 	if (p->spec->lacks_coords)

@@ -253,7 +253,7 @@ static void drop_ties(struct sight *sight, const struct tie *tie)
 	spec->elements = elements;
 }
 
-/* A part inside one that is told is not told as well; nor are the coordinates of either. */
+/* A part inside one that is reported is not reported as well; nor are the coordinates of either. */
 static void report(const struct sight *sight)
 {
 	const struct spec *spec = sight->spec;

@@ -61,7 +61,7 @@ static void read_use(struct parser *p);
 static void use_failed(struct parser *p, size_t after);
 static const struct part_reader reader = { read_use, use_failed };
 
-/* Names, expressions and statements: told once, with the part's own names, however often the part is used. */
+/* Names, expressions and statements: reported once, with the part's own names, however often the part is used. */
 static void look_at(struct text *text)
 {
 	int before = diagnostics_errors();
@@ -258,7 +258,7 @@ static void read_use(struct parser *p)
 		add_part(p, name[i], &use, text);
 }
 
-/* Their names are known but broken, so that their use is not told as well. */
+/* Their names are known but broken, so that their use is not reported as well. */
 static void use_failed(struct parser *p, size_t after)
 {
 	static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
@@ -312,7 +312,7 @@ const char *energy_text(const struct spec *spec, int index)
 	return begins ? written_text(e->part, e->at, e->end) : NULL;
 }
 
-/* Parts of one file, all modelled or none, are told together at the first of them. */
+/* Parts of one file, all modelled or none, are reported together at the first of them. */
 const char *parts_text(const struct spec *spec, int index)
 {
 	const struct assembly_part *part = spec->assembly.part[index];

@@ -35,7 +35,7 @@ static void need_transfers(const struct model *model)
 		      LIMIT_TRANSFERS);
 	if (drives_of(model, &drive) == 0)
 		error(model->request.step_at, "input u, and u in an equation",
-		      "there is no input and no load that an output could be told over");
+		      "there is no input and no load that an output could respond to");
 }
 
 /* Over each input alone: what it does some time later is added to what it does at once */

@@ -63,7 +63,7 @@ static void copy_escaped(FILE *from, FILE *to)
 			putc(c, to);
 }
 
-/* What is told a person, as it is */
+/* The text for a person, as it is */
 static void print_words(FILE *to, const struct step *step, void (*print)(FILE *to, const struct step *step))
 {
 	FILE *words = new_script();
@@ -294,7 +294,7 @@ static void print_cost(FILE *to, const struct step *step)
 static const struct section sections[] = {
 	{ "Equations", print_equations, NULL, NULL },
 	{ "Matrices", print_matrices, NULL, NULL },
-	{ "What is not told, and why", print_left_out, is_nonlinear, NULL },
+	{ "What is not reported, and why", print_left_out, is_nonlinear, NULL },
 	{ "Poles and modes", print_modes, is_linear_model, NULL },
 	{ "Poles in the plane", NULL, is_linear_model, "poles" },
 	{ "Mode shapes", print_shapes, has_shapes, "modes" },

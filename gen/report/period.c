@@ -299,7 +299,7 @@ static double crossing(struct mover *m, int system, int region, double outside, 
 	return high;
 }
 
-/* ---- what is told of a period ---- */
+/* ---- what is reported of a period ---- */
 
 /* y e^{-iwt} and its first two derivatives, of state j */
 static void rotated(const struct mover *m, const double *z, const double *slope, const double *second, int j,

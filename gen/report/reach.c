@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a series costs, and how far it reaches from the start. Estimates are told to two digits. */
+/* What a series costs, and how far it reaches from the start. Estimates are given to two digits. */
 #include "report/report.h"
 #include "step/series/expansion.h"
 

@@ -50,7 +50,7 @@ void json_units(FILE *to, const struct step *step);          /* a member of an o
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
 bool is_nonlinear(const struct step *step);
-void text_nonlinear(FILE *to, const struct step *step);     /* what is not told of it, and why */
+void text_nonlinear(FILE *to, const struct step *step);     /* what is not reported of it, and why */
 void json_nonlinear(FILE *to, const struct step *step);     /* members of an object */
 const char *stability_by_poles(int count, const struct pole_report *pole); /* by the largest real part */
 void text_point(FILE *to, const struct step *step);         /* where they were linearised, where they were */
@@ -118,7 +118,7 @@ void json_modal_truncation(FILE *to, const struct model *model); /* members of a
 
 /* ---- transfer.c: transfer functions of the linear part ---- */
 
-struct drive {                      /* what an output is told over */
+struct drive {                      /* what an output is a response to */
 	const char *name;           /* of an input; of a load what it is in time: cos(5*t) */
 	int input;                  /* -1: it is a load */
 	int load, column, segment;  /* what it forces in this segment of time */
@@ -163,7 +163,7 @@ int  shapes_of(const struct linear *system, int count, const struct pole_report 
 
 /* ---- space.c: shapes, zeros, static gains and state space, for --explain ---- */
 
-/* of the model that poles are told of */
+/* of the model whose poles are reported */
 int  shapes_of_step(const struct step *step, struct mode_shape **shape, const struct model **of);
 const char *zeros_text(const struct model *model, const struct transfer *t);
 const char *static_gain_text(const struct transfer *t);

@@ -62,7 +62,7 @@ struct printing {
 	unsigned long last, rows;   /* steps; those printed */
 	int passed;                 /* likewise of crossings */
 	double *largest;            /* per output */
-	const char *why;            /* of what is not told: at this precision */
+	const char *why;            /* of what is not reported: at this precision */
 };
 
 /* To the nearest double. What is 0 to 2^-128 of the largest value so far, or to 2^-192, is 0. */
@@ -120,7 +120,7 @@ static bool print_row(struct printing *p, const struct trajectory *t, mpq_srcptr
 	return true;
 }
 
-/* What was not told with fewer bits, with so many; true: all is */
+/* What was not decided with fewer bits, with so many; true: all is */
 static bool print_with(struct printing *p, int precision)
 {
 	struct trajectory *t = trajectory_start(p->model, NULL, p->model->initial, precision);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What --explain tells of the linear part beside its matrices and poles: mode shapes, zeros, static gains, and the
+/* What --explain says of the linear part beside its matrices and poles: mode shapes, zeros, static gains, and the
  * state space x' = A x + B u, y = C x + D u: u are the inputs, then the loads, each with its function of time taken as
  * u. */
 #include "report/report.h"
@@ -12,7 +12,7 @@
 
 struct space {
 	const struct model *model;
-	int states, drives, outputs;    /* outputs: those that are told */
+	int states, drives, outputs;    /* outputs: those that are reported */
 	struct drive *drive;
 	int *output;
 	bool slopes;                    /* an input's u' acts: B1 u', D1 u' beside */
@@ -301,7 +301,7 @@ static void text_transfers(FILE *to, const struct step *step)
 	struct drive *drive;
 	int drives = drives_of(model, &drive), count = transfers_of_step(step, &t);
 	if (drives && model->system.states > LIMIT_TRANSFERS)
-		fprintf(to, "\nStatic gains and zeros are told of up to %d states.\n", LIMIT_TRANSFERS);
+		fprintf(to, "\nStatic gains and zeros are reported up to %d states.\n", LIMIT_TRANSFERS);
 	if (count)
 		fprintf(to, "\n    %-36s %-16s zeros [1/s]\n", "output over input or load", "static gain");
 	for (int k = 0; k < count; k++)
@@ -315,7 +315,7 @@ void text_linear(FILE *to, const struct step *step)
 	struct mode_shape *shape;
 	int count = shapes_of_step(step, &shape, &of);
 	if (of->system.n > LIMIT_SHAPES)
-		fprintf(to, "\nMode shapes are told of up to %d coordinates.\n", LIMIT_SHAPES);
+		fprintf(to, "\nMode shapes are reported up to %d coordinates.\n", LIMIT_SHAPES);
 	else
 		text_shapes(to, of, count, shape);
 	text_transfers(to, step);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Responses of piecewise-linear models to a slow sweep, up and down: at each frequency the motion that repeats with the
  * excitation and is stable, near the one before; where there is none near, what the model comes to in time. Of it the
- * harmonic of the excitation's own frequency is told, over the excitation: a describing function (Gelb and Vander Velde
- * 1968, section 3). Motions that repeat are roots of y(T) - y(0), by Newton's method; they are stable where all
+ * harmonic of the excitation's own frequency is reported, over the excitation: a describing function (Gelb and Vander
+ * Velde 1968, section 3). Motions that repeat are roots of y(T) - y(0), by Newton's method; they are stable where all
  * eigenvalues of its derivative are inside the unit circle (Floquet). */
 #include "model/contacts/contacts.h"
 #include "report/report.h"
@@ -322,7 +322,7 @@ struct sweeps sweeps_of(const struct step *step, struct band band, double amplit
 	int drives = drives_of(model, &drive);
 	if (columns_of(model, drives, drive, &s) == 0)
 		error(model->request.step_at, "input u, and u in an equation",
-		      "there is no input and no changing load that an output linear in states could be told over");
+		      "there is no input and no changing load that an output linear in states could respond to");
 	for (int k = 0; k < 2; k++) {
 		s.size[k] = ARRAY(double, (size_t)band.count * (size_t)s.count);
 		s.angle[k] = ARRAY(double, (size_t)band.count * (size_t)s.count);

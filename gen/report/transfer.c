@@ -101,7 +101,7 @@ int transfers_of(struct resolvent *r, const struct model *model, struct transfer
 	return count;
 }
 
-/* ---- what is told of it ---- */
+/* ---- what is reported of it ---- */
 
 bool static_gain(const struct transfer *t, mpq_ptr gain)
 {

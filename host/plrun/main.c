@@ -40,7 +40,7 @@ static size_t definitions_for(const struct options *o, const struct code *c, boo
 }
 
 /* Which params are tunable is known of the C alone: it is made without the numbers, and once more with those that
- * belong into it. What keeps the first from being made is told of the one with all. */
+ * belong into it. What keeps the first from being made is reported of the one with all. */
 static void make_code(struct start *s)
 {
 	const char **definition = need(calloc(s->options.definitions + 1, sizeof *definition));

@@ -16,7 +16,7 @@ struct choice {                         /* which columns are read */
 	bool chosen;                    /* by --column or --time: others may stand beside */
 };
 
-/* "t", "time", "Time [s]", "t/s"; another unit is told where it stands */
+/* "t", "time", "Time [s]", "t/s"; another unit is reported where it stands */
 static bool is_time(const struct table *t, size_t column)
 {
 	const char *name = t->header[column].text;

@@ -61,7 +61,7 @@ static struct code *generate_with(const struct sweep *s, const char *definition,
 	return generate(s->tools, s->options, &definition, 1, true, error, &status);
 }
 
-/* A name that plgen does not know is wrong in every row: it is told at once, where it stands. */
+/* A name that plgen does not know is wrong in every row: it is reported at once, where it stands. */
 static void check_param(const struct sweep *s, const struct table *t, size_t column, const char *value)
 {
 	char *error = NULL;
@@ -95,7 +95,7 @@ static void take_header(struct sweep *s, const struct table *t, const struct cod
 	}
 }
 
-/* A value as it is given to plgen, and told: numbers with a point; any other is an expression, or plgen says what. */
+/* A value as it is given to plgen, and printed: numbers with a point; others are expressions, or plgen says what. */
 static const char *value_text(struct table *t, size_t cell, bool is_number)
 {
 	const char *text = t->cell[cell].text;
@@ -431,7 +431,7 @@ static void write_done(struct sweep *s)
 		fail(WRONG_DATA, format("cannot write the lines: %s", strerror(errno)));
 }
 
-/* With the time that is left, once it can be told from the runs that are done */
+/* With the time that is left, once it is known from the runs that are done */
 static char *progress_text(const struct sweep *s)
 {
 	const double took = difftime(time(NULL), s->began), done = (double)(s->done - s->before);

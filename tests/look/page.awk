@@ -34,7 +34,7 @@ END {
 	if (depth != 0)
 		wrong("not closed: " name[depth])
 	linear = "Poles and modes;Poles in the plane;Mode shapes"
-	other = "What is not told, and why"
+	other = "What is not reported, and why"
 	n = split("Equations;Matrices;What was chosen, and why;Cost and error of a step;" \
 	          (nonlinear ? other : linear), section, ";")
 	m = split((nonlinear ? linear ";Static gains and zeros;Frequency responses" : other), absent, ";")

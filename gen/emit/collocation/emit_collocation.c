@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps by collocation, as long as a tolerance lets them be, with outputs from their polynomials; beside them, where
  * the scheme switches, steps by the Taylor series.  How they go is in the runtime (radau.h, which the model's file
- * includes): here is what it is told of the model. */
+ * includes): here is what it is given of the model. */
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "model/reads.h"
@@ -72,7 +72,7 @@ void emit_collocation_place(const struct emitter *e)
 	say(e, "\nstatic void $n_place($n *s);  /* what follows from a state that was set */\n");
 }
 
-/* ---- what the collocation is told ---- */
+/* ---- what the collocation is given ---- */
 
 /* 1/s: of the loads that what chooses formulas reads */
 static double frequency_of_choices(const struct emitter *e)
@@ -200,7 +200,7 @@ static void emit_bound_rates(const struct emitter *e)
 	       "}\n");
 }
 
-/* ---- what it is told ---- */
+/* ---- what it is given ---- */
 
 static void emit_series_beside(const struct emitter *e)
 {

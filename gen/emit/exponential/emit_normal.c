@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are told of
+/* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are given of
  * them: tables, sums over them, sizes. */
 #include "inner.h"
 #include "emit/series/series.h"

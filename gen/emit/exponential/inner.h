@@ -25,7 +25,7 @@ void emit_forces_on_modes(const struct emitter *e);               /* NAME_on_mod
 void emit_mode_tables(const struct emitter *e);
 void emit_mode_sizes(const struct emitter *e);
 
-/* ---- remainder.c, loops.c: what a scheme leaves over; a step that loops over its tables ---- */
+/* ---- remainder.c, loops.c: the nonlinear remainder; a step that loops over its tables ---- */
 
 bool many_operators(const struct emitter *e);
 void emit_loop_tables(const struct emitter *e);

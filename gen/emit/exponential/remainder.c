@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a scheme leaves over as a function of the state: what it reads, how it is called, its text. */
+/* The nonlinear remainder as a function of the state: what it reads, how it is called, its text. */
 #include "inner.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_batch: what the header has of it, and what batch.h is told. */
+/* NAME_batch: what the header has of it, and what batch.h is given. */
 #include "inner.h"
 #include "emit/declarations.h"
 #include "emit/state.h"

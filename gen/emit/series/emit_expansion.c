@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Steps by the Taylor series of the solution: its sums as straight lines, and what the runtime's taylor.h, which the
- * model's file includes, is told of it. */
+ * model's file includes, is given of it. */
 #include "inner.h"
 #include "emit/steps.h"
 #include "step/series/expansion.h"
@@ -199,7 +199,7 @@ void emit_expansion_members(const struct emitter *e)
 		emit_switching_members(e);
 }
 
-/* ---- what taylor.h is told ---- */
+/* ---- what taylor.h is given ---- */
 
 void emit_pass_time(const struct emitter *e)
 {

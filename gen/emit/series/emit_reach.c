@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How far a Taylor series holds, what its coefficients may not show (functions that are all but constant over most of
- * their range, loads that may cancel): what reach.h, measure.h and unresolved.h of the runtime are told. */
+ * their range, loads that may cancel): what reach.h, measure.h and unresolved.h of the runtime are given. */
 #include "inner.h"
 #include "emit/state.h"
 #include "step/collocation/collocation.h"
@@ -72,7 +72,7 @@ void emit_reach_tables(const struct emitter *e)
 	emit_array(e, NULL, "before_last", 1, &most, before, NULL);
 }
 
-/* ---- what the runtime is told ---- */
+/* ---- what the runtime is given ---- */
 
 void emit_reach_sizes(const struct emitter *e)
 {
@@ -112,7 +112,7 @@ static void emit_unresolved_table(const struct emitter *e, const char *name, boo
 			  row);
 }
 
-/* ---- what reach.h is told ---- */
+/* ---- what reach.h is given ---- */
 
 void emit_unresolved_sizes(const struct emitter *e)
 {

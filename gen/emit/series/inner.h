@@ -26,7 +26,7 @@ bool looks_at_tolerance(const struct emitter *e);
 bool watches(const struct emitter *e);          /* of fixed order: whether the last terms are above the tolerance */
 int  most_served(const struct emitter *e);      /* steps, by one expansion; with inputs only one */
 void emit_reach_tables(const struct emitter *e);                 /* NAME_last, NAME_before_last */
-void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is told */
+void emit_reach_sizes(const struct emitter *e);                  /* what reach.h is given */
 
 /* ---- emit_over.c: a series of fixed order over several steps ---- */
 

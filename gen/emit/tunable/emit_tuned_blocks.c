@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Linear models with tunable params: an instance holds its own factors, of a large model those of independent blocks
- * that params touch, and NAME_retune, of retune.h, computes them anew on the target. What it is told: equations,
+ * that params touch, and NAME_retune, of retune.h, computes them anew on the target. What it is given: equations,
  * blocks, which it takes together in groups, sizes. */
 #include "inner.h"
 #include "emit/linear/blocks.h"
@@ -308,7 +308,7 @@ static void emit_rows_of_loads(const struct emitter *e)
 		emit_integers(e, "unsigned char", "decays", e->growths, decays);
 }
 
-/* ---- what retune.h is told ---- */
+/* ---- what retune.h is given ---- */
 
 static int most_derivatives(const struct emitter *e)
 {

@@ -293,7 +293,7 @@ static void find_jacobian(void *context)
 
 /* ---- the remainder ---- */
 
-/* Inputs that the linear core carries are not left over, nor are the highest derivatives; loads are looked at apart. */
+/* Inputs that the linear core carries are not in the remainder, nor are highest derivatives; loads: below. */
 static bool is_carried(const struct building *b, const struct basis *basis)
 {
 	const struct model *model = b->model;

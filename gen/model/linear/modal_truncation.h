@@ -27,7 +27,7 @@ struct mode {
 	double re, im;              /* its pole [1/s], im >= 0; where there are several: their middle */
 	/* In units of the output: the largest size it can ever have in it by the start and the loads, the same of what
 	 * is left once the forced part of loads is kept, and per input the largest that a step of height 1 gives;
-	 * HUGE_VAL: no bound. In double precision: to choose by, and to tell. */
+	 * HUGE_VAL: no bound. In double precision: to choose by, and to report. */
 	double *size;               /* [output] */
 	double *transient;          /* [output] */
 	double *by_input;           /* [output * inputs + input] */

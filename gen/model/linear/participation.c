@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How large each mode's answer is in each output, in double precision: sums of |residues|, to choose by and to tell. */
+/* How large each mode's response is in each output, in double precision: sums of |residues|, to choose and report. */
 #include "inner.h"
 
 #include <complex.h>
@@ -7,7 +7,7 @@
 
 #define UNOBSERVABLE 1e-13          /* of what it is a sum of: less is rounding */
 
-struct picture {                    /* of one mode, to tell its size by */
+struct picture {                    /* of one mode, to find its size by */
 	int k, columns;             /* states; coordinates, where modes are coordinates */
 	bool moves;
 	double *T;                  /* k x k */

@@ -525,7 +525,7 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 		;
 	complete_switching_functions(s);
 	mark_possible(b, s);
-	if (!b->model->relative)                /* else it has been told */
+	if (!b->model->relative)                /* else its error was reported */
 		check_jumps(b, s);
 	if (has_events(s))
 		resolve_friction(b, s);

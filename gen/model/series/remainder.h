@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Outputs, a scheme's operators, and what they leave over. */
+/* Outputs, a scheme's operators, and their nonlinear remainder. */
 #ifndef PLGEN_MODEL_REMAINDER_H
 #define PLGEN_MODEL_REMAINDER_H
 
@@ -55,7 +55,7 @@ struct splitting {                  /* the remainder, sorted: see split.c */
 	struct time_function *function; /* the first is 1 */
 	int rests;                  /* forces that are neither */
 	struct rest_force *rest;
-	int forcings;               /* known loads to which modes respond exactly; none where loads are left over */
+	int forcings;               /* known loads to which modes respond exactly; none: the remainder has loads */
 	struct forcing_force *forcing;
 	const struct node *mixed;   /* time and states in one function: none of this; NULL: there is none such */
 	bool ends_steady;           /* there is a last segment of time, in which all functions are constant */
@@ -82,7 +82,7 @@ struct remainder {                  /* the remainder, of each operator */
 	struct smoothness smooth;
 };
 
-/* ---- operator.c: the linear operator of a scheme, and what it leaves over ---- */
+/* ---- operator.c: the linear operator of a scheme, and its nonlinear remainder ---- */
 
 void build_operators(struct building *b);
 /* the model's, with the operator's C and K and the force columns */

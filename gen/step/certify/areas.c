@@ -255,7 +255,7 @@ bool trajectory_meets(const struct trajectory *t, const struct guard *one, const
 	       mpq_sgn(ratio) > 0;
 }
 
-/* ---- what cannot be told ---- */
+/* ---- what cannot be decided ---- */
 
 const char *trajectory_time(mpq_srcptr time)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The words that recipes are written in: tables of the exact part, phi-function weights in them, nodes, stages,
- * remainders. A recipe that asks for more than there is room for is told so. */
+ * remainders. A recipe that asks for more than there is room for is refused. */
 #include "inner.h"
 
 _Noreturn void internal_error(const struct step *step, const char *what)

@@ -120,7 +120,7 @@ static void recipe_bm3(struct recipe *r)
 
 static void recipe_none(struct recipe *r)
 {
-	internal_error(r->step, "something is left over, and it has no recipe");
+	internal_error(r->step, "there is a remainder, and it has no recipe");
 }
 
 #define SCHEME(id, recipe, ...) [SCHEME_##id] = recipe_##recipe,

@@ -38,7 +38,7 @@ static void add_forcings(const struct model *model, mpq_t *A, const mpq_t *inver
 	}
 }
 
-/* A of [q, q', 1, forcing terms], by the first operator and what it leaves over at the end */
+/* A of [q, q', 1, forcing terms], by the first operator and its remainder at the end */
 static mpq_t *last_matrix(const struct model *model, const mpq_t *M, const mpq_t *C, const mpq_t *K)
 {
 	int n = model->n, size = steady_size(model), column;

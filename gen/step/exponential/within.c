@@ -27,7 +27,7 @@ static double *powers_of(int nodes, const mpq_t *node)
 	return factor;
 }
 
-/* Norms of all that is left over at the end, on eta and on eta' */
+/* Norms of the remainder at the end, on eta and on eta' */
 static void last_norms(const struct normal *m, const struct splitting *split, double *norm)
 {
 	size_t cells = (size_t)m->modes * (size_t)m->modes;

@@ -454,7 +454,7 @@ class Model(Linear):
                 status, 'with these values the numbers of the step are not finite')))
 
     def _takes(self, step: Value) -> bool:
-        """Does an instance take this step? Where expressions read the params there is one; what is no step is told."""
+        """Does an instance take this step? Where expressions read the params it does; what is no step is reported."""
         c, h = self._code, float(self.dtype.type(step))
         scratch = self._memory.copy()
         values = np.ascontiguousarray(self._tuned)
