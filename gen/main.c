@@ -282,6 +282,8 @@ static bool choose(struct work *w)
 /* Of what is printed the C and its header have derivatives. */
 static bool derive(struct work *w)
 {
+	if (w->options.fmu && w->spec->sensitivities > 0)
+		say_note(w->spec->sensitivity[0].at, "an FMU has the model without its derivatives");
 	return w->options.print > PRINT_HEADER || w->options.fmu || find_derivatives(w->step);
 }
 
