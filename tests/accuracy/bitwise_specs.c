@@ -350,6 +350,9 @@ const struct bitwise_spec bitwise_specs[] = {
       "0]\n" STEP,
       PLAIN },
 
+    /* e^-718 leaves the step: below full precision, beside a factor of its row that is 2^100 times as large */
+    { "a factor below full precision", "model m\ncoord a, b\ninit b = 1\na' + 718*a = b\nb' + b = 0\nstep 1\n", PLAIN },
+
     /* sketches */
     { "three masses, a relative damper, forces",
       "model m\ncoord a, b, c\ninit b = 1\nmass 2 at a\nmass 1 at b\nmass 0.5 at c\nspring 30 between a, b\n"
