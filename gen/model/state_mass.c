@@ -353,7 +353,8 @@ static void check_mass_of(void *context)
 	const struct basis *highest = &system->written->highest[column];
 	error(work->mass->node->start, "another start, or a mass that moves with it",
 	      "the mass matrix is singular at the start: the equations do not determine %s%s there",
-	      model->names.coord[highest->index], highest->order == 2 ? "''" : "'");
+	      model->names.coord[highest->index],
+	      highest->index >= model->n ? "" : highest->order == 2 ? "''" : "'");
 }
 
 void check_mass_at_start(struct building *b)
