@@ -71,7 +71,7 @@ enum {
 	LIMIT_SAMPLES = 1000000,    /* in a period of a sweep */
 	LIMIT_HELD_STATES = 64,     /* and whose discrete state space is */
 	LIMIT_FREQUENCIES = 100000, /* rows of --response */
-	LIMIT_SERIES = 50000,       /* multiplications of a Taylor series, each of which is C */
+	LIMIT_SERIES = 5000000,     /* multiplications of a Taylor series */
 	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */

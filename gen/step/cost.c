@@ -473,14 +473,26 @@ static void count_sequence(const struct expansion *x, const struct sequence *s, 
 	}
 }
 
+static void count_sequences(const struct expansion *x, struct program *program)
+{
+	for (int i = 0; i < x->count; i++)
+		for (int k = 0; k <= x->sequence[i].top; k++)
+			count_sequence(x, &x->sequence[i], k, program);
+}
+
+int multiplications_of_series(const struct expansion *x)
+{
+	struct program counted = { .multiplications = 0 };
+	count_sequences(x, &counted);
+	return counted.multiplications;
+}
+
 void count_expansion(const struct step *step, struct program *program)
 {
 	enum { TWO_SUM = 8 };           /* of pl_accumulate, with what it is given 0 */
 	const struct expansion *x = step->taylor.expansion;
 	const struct linear *system = &step->branch->system;
-	for (int i = 0; i < x->count; i++)
-		for (int k = 0; k <= x->sequence[i].top; k++)
-			count_sequence(x, &x->sequence[i], k, program);
+	count_sequences(x, program);
 	program->additions += system->states * (x->order + TWO_SUM);
 	for (int l = 0, column = 0; l < system->loads; l++)
 		for (int k = 0; k < system->load[l].columns; k++, column++)

@@ -8,6 +8,7 @@
 /* ---- cost.c: what a step costs ---- */
 
 void count_program(const struct step *step, struct program *program); /* of a step with a remainder, not its loads */
+int  multiplications_of_series(const struct expansion *x);   /* as far as its sequences are read */
 void count_expansion(const struct step *step, struct program *program); /* of one series, and its sum */
 /* of a collocated step an iteration of Newton's method; where there is no series, that is what its program costs */
 void count_collocation(struct step *step);

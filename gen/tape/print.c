@@ -13,6 +13,7 @@ struct printing {
 	const struct tape_target *to;
 	FILE *out;
 	int *uses, parts;           /* locals so far that have no name of their own */
+	int indent;
 	const char **local;         /* per node: what holds it; NULL: nothing yet */
 	bool *wide;                 /* per node: is it lanes? NULL: none is */
 };
@@ -42,7 +43,7 @@ static const char *declare(struct printing *p, tape_ref ref, const char *text)
 	const char *name = tape_node(p->t, ref)->name;
 	name = name ? name : format("part%d", ++p->parts);
 	const char *type = p->wide && p->wide[ref] ? p->to->lanes->type : p->to->real;
-	fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", type, name, text);
+	fprintf(p->out, "%*sconst %s %s = %s;\n", p->indent, "", type, name, text);
 	return p->local[ref] = name;
 }
 
@@ -189,24 +190,38 @@ static bool *find_wide(const struct tape *t, const struct tape_target *to)
 	return wide;
 }
 
+/* A line that opens or closes a block */
+static void print_line(struct printing *p, const char *line)
+{
+	const size_t length = strlen(line);
+	p->indent -= *line == '}' ? 4 : 0;
+	if (length > 0)
+		fprintf(p->out, "%*s%s\n", p->indent, "", line);
+	p->indent += length > 0 && line[length - 1] == '{' ? 4 : 0;
+}
+
 static void print_out(const struct printing *p, const struct tape_out *set, const char *text)
 {
 	const char *note = set->note ? format("  /* %s */", set->note) : "";
 	if (!set->local)
-		fprintf(p->out, "%*s%s = %s;%s\n", p->to->indent, "", set->target, text, note);
+		fprintf(p->out, "%*s%s = %s;%s\n", p->indent, "", set->target, text, note);
 	else if (strcmp(text, set->target) != 0)
-		fprintf(p->out, "%*sconst %s %s = %s;\n", p->to->indent, "", p->to->real, set->target, text);
+		fprintf(p->out, "%*sconst %s %s = %s;\n", p->indent, "", p->to->real, set->target, text);
 }
 
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out)
 {
-	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t) };
+	struct printing p = { .t = t, .to = to, .out = out, .uses = tape_uses(t), .indent = to->indent };
 	int outs = tape_outs(t);
 	p.local = ARRAY(const char *, tape_length(t) + 1);
 	p.wide = to->lanes ? find_wide(t, to) : NULL;
 	const char **text = ARRAY(const char *, outs + 1);
 	for (int i = 0; i < outs; i++) {
 		tape_ref ref = tape_out(t, i)->ref;
+		if (!tape_out(t, i)->target) {
+			print_line(&p, tape_out(t, i)->note);
+			continue;
+		}
 		text[i] = widened(&p, ref, text_of(&p, ref, CHOICE, tape_out(t, i)->indent));
 		if (!to->locals_first)
 			print_out(&p, tape_out(t, i), text[i]);

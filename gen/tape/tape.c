@@ -262,6 +262,11 @@ void tape_set_local(struct tape *t, const char *name, tape_ref ref)
 	t->out[t->outs - 1].local = true;
 }
 
+void tape_statement(struct tape *t, const char *line)
+{
+	tape_set(t, NULL, tape_number(t, 0), 0, line);
+}
+
 /* ---- what has to hold ---- */
 
 static int operands_of(enum tape_op op)

@@ -44,7 +44,8 @@ struct tape_node {
 	const char *name;           /* of the local that holds it; NULL: it needs none */
 };
 struct tape_out {                   /* target = node; printed in this order */
-	const char *target, *note;  /* NULL: no comment behind it */
+	const char *target;         /* NULL: `note` is a line of C, which may open or close a block */
+	const char *note;           /* NULL: no comment behind it */
 	tape_ref ref;
 	bool local;                 /* the target is a local of that name, which may be the node's own */
 	int indent;                 /* of the lines that a long sum goes on in */
@@ -81,6 +82,7 @@ tape_ref tape_table(struct tape *t, tape_ref x, int pieces, const struct straigh
 void tape_name(struct tape *t, tape_ref ref, const char *name); /* unless it is a constant or has one */
 void tape_set(struct tape *t, const char *target, tape_ref ref, int indent, const char *note);
 void tape_set_local(struct tape *t, const char *name, tape_ref ref);
+void tape_statement(struct tape *t, const char *line);     /* between what is set; not where locals are first */
 bool tape_is_operand(const struct tape *t, tape_ref ref);
 /* The first invariant that is broken: operands before their reader, as many as it has, of the types that it reads;
  * no two nodes alike; NULL: none is. Every pass leaves it NULL. */

@@ -172,13 +172,20 @@ static void end_function(const struct emitter *e, const struct recurrences *r)
 
 void emit_expand_from(const struct emitter *e)
 {
-	struct recurrences *r = series_new(e);
+	const struct expansion *x = own_expansion(e);
+	struct recurrences *r = x->lines ? series_in_loop(e) : series_new(e);
+	if (x->lines) {
+		series_set_sizes(r, x, "terms");
+		set_lines(r, x);
+		emit_series_loop_tables(e);
+	} else {
+		set_kept_coefficients(e, r);
+	}
 	begin_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of y",
 				 has_offset(e) ? "tau after now" : "now",
 				 spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h"),
 		       "expand_from", spell(e, "double c[%d][$c], double terms[]", own_expansion(e)->order + 1));
-	set_kept_coefficients(e, r);
-	emit_series_tape(e, r);
+	(x->lines ? emit_series_loop : emit_series_tape)(e, r);
 	close_function(e, "s u slope tau when segment interval terms");
 }
 

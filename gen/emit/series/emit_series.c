@@ -36,9 +36,32 @@ const char *coefficient(const struct emitter *e, int sequence, int k)
 
 /* ---- operands ---- */
 
+/* What the loop over k reads of a long series */
+static const char *stage_operand(const struct emitter *e, const struct stage_value *v)
+{
+	static const char *const function[] = { [STAGE_INNER] = "inner", [STAGE_QUOTIENT] = "inner_of_quotient",
+						[STAGE_POWER] = "inner_of_power" };
+	const struct lines *l = own_expansion(e)->lines;
+	const char *k = stage_index(v->offset);
+	switch (v->kind) {
+	case STAGE_COEFFICIENT: return format("table_by_0[%d][%s]", l->row[v->a], k);
+	case STAGE_FACTOR:      return spell(e, "$n_series_factor[%d][%s]", v->a, k);
+	case STAGE_FORCE:       return format("force[%s][%d]", k, v->a);
+	case STAGE_NUMBER:      return format("(double)(%s)", k);
+	case STAGE_SOLVED:      return format("solved_by_%d[%d]", v->a, v->b);
+	case STAGE_SQUARE:      return spell(e, "$n_inner_square(table_by_0[%d], %s)", l->row[v->a], k);
+	default:                break;
+	}
+	const char *more = v->kind == STAGE_POWER ? format(", %s", shortest(v->exponent)) : "";
+	return spell(e, "$n_%s(table_by_0[%d], table_by_0[%d], %s%s)", function[v->kind], l->row[v->a],
+		     l->row[v->b], k, more);
+}
+
 static const char *operand(const void *context, const struct tape_node *n)
 {
 	const struct emitter *e = context;
+	if (n->op == TAPE_TABLE && n->part == STAGED)
+		return stage_operand(e, &own_expansion(e)->lines->value[n->index]);
 	switch (n->op) {
 	case TAPE_STATE: return format("y[%d]", n->index);
 	case TAPE_LOAD:  return load_operand(e, n->index, n->part);
@@ -55,15 +78,110 @@ static const char *operand(const void *context, const struct tape_node *n)
 
 struct recurrences *series_new(const struct emitter *e)
 {
-	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e, false });
+	return recurrences_new(e->step, own_expansion(e), (struct series_names){ .name = base_name, .context = e });
+}
+
+static void print_series(const struct emitter *e, const struct recurrences *r, bool locals_first)
+{
+	const struct tape *t = tape_of_recurrences(r);
+	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
+					.context = e, .indent = 4, .locals_first = locals_first };
+	tape_print(t, &to, e->to);
 }
 
 void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 {
-	const struct tape *t = tape_of_recurrences(r);
-	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
-					.context = e, .indent = 4, .locals_first = true };
-	tape_print(t, &to, e->to);
+	print_series(e, r, true);
+}
+
+/* ---- a long one ---- */
+
+static const char *solver(const void *context, const struct linear_equations *q, bool factors)
+{
+	const struct emitter *e = context;
+	const int n = q->n, i = q->number;
+	return factors ? spell(e, "$n_factor_by_lists(%d, %d, $n_first_of_%d, $n_before_%d, matrix_by_%d);", n,
+			       is_symmetric_system(q), i, i, i)
+		       : spell(e, "$n_solve_by_lists(%d, $n_first_of_%d, $n_before_%d, matrix_by_%d, solved_by_%d);",
+			       n, i, i, i, i);
+}
+
+struct recurrences *series_in_loop(const struct emitter *e)
+{
+	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e, false, true,
+								    solver });
+}
+
+/* Each system once: its first component has the place of the first */
+static const struct linear_equations *listed_at(const struct expansion *x, int sequence)
+{
+	const struct sequence *s = &x->sequence[sequence];
+	return s->equations && s->component == 0 && s->top >= 0 && is_listed(s->equations) ? s->equations : NULL;
+}
+
+static bool calls_stage(const struct expansion *x, enum stage_kind kind)
+{
+	bool any = false;
+	for (int i = 0; i < x->lines->values; i++)
+		any = any || x->lines->value[i].kind == kind;
+	return any;
+}
+
+static void emit_factor_lists(const struct emitter *e, const struct linear_equations *q)
+{
+	int *first = ARRAY(int, q->n + 1), *before = factor_columns(q, first);
+	say(e, "\n/* Factors of the matrix of %d equations: where the columns of each row begin that are not 0, "
+	       "and these columns */\n", q->n);
+	emit_integers(e, "short", format("first_of_%d", q->number), q->n + 1, first);
+	emit_integers(e, "short", format("before_%d", q->number), first[q->n] ? first[q->n] : 1, before);
+}
+
+void emit_series_loop_tables(const struct emitter *e)
+{
+	const struct expansion *x = own_expansion(e);
+	const struct lines *l = x->lines;
+	const int states = e->system->states;
+	bool solves = false;
+	double *factor = ARRAY(double, (size_t)(l->factors * l->width) + 1);
+	int *row = ARRAY(int, (size_t)(states + x->columns));
+	for (int i = 0; i < l->factors * l->width; i++)
+		factor[i] = l->factor[i / l->width][i % l->width];
+	if (l->factors)
+		emit_array(e, "Factors of terms of the series, of each coefficient", "series_factor", 2,
+			   (const int[]){ l->factors, l->width }, factor, NULL);
+	for (int i = 0; i < states + x->columns; i++)
+		row[i] = l->row[i < states ? i : x->column[i - states]];
+	say(e, "\n/* The rows of the table of coefficients that are kept */\n");
+	emit_integers(e, "short", "kept_row", states + x->columns, row);
+	for (int i = 0; i < x->count; i++) {
+		const struct linear_equations *q = listed_at(x, i);
+		if (q)
+			emit_factor_lists(e, q);
+		solves = solves || q;
+	}
+	emit_sizes(e, "lines.h", { "INNERS", calls_stage(x, STAGE_INNER) }, { "SQUARES", calls_stage(x, STAGE_SQUARE) },
+		   { "DIVIDED", calls_stage(x, STAGE_QUOTIENT) }, { "POWERS", calls_stage(x, STAGE_POWER) },
+		   { "SOLVES", solves });
+	say_include(e, "lines.h");
+}
+
+void emit_series_loop(const struct emitter *e, const struct recurrences *r)
+{
+	const struct expansion *x = own_expansion(e);
+	say(e, "    double table_by_0[%d][%d];\n"
+	       "    int k_by_0, i_by_0;\n", x->lines->rows, x->lines->width);
+	for (int i = 0; i < x->count; i++) {
+		const struct linear_equations *q = listed_at(x, i);
+		if (q)
+			say(e, "    double matrix_by_%d[%d] = {0.0}, solved_by_%d[%d];\n", q->number, q->n * q->n,
+			    q->number, q->n);
+	}
+	print_series(e, r, false);
+	say(e, "    for (k_by_0 = 0; k_by_0 <= %d; k_by_0++) {\n"
+	       "        for (i_by_0 = 0; i_by_0 < %d; i_by_0++) {\n"
+	       "            c[k_by_0][i_by_0] = table_by_0[$n_kept_row[i_by_0]][k_by_0];\n"
+	       "        }\n"
+	       "    }\n", x->order, e->system->states + x->columns);
 }
 
 void emit_series_locals(const struct emitter *e)

@@ -19,6 +19,13 @@ void emit_series_ends(const struct emitter *e);                         /* next0
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
 
+/* ---- emit_series.c: the coefficients of a series as C ---- */
+
+/* A long one as a loop over k: its tables, and what runs */
+struct recurrences *series_in_loop(const struct emitter *e);
+void emit_series_loop_tables(const struct emitter *e);
+void emit_series_loop(const struct emitter *e, const struct recurrences *r);
+
 /* ---- emit_reach.c: how far a series holds ---- */
 
 bool shares_kinds(const struct emitter *e);     /* of states of an adaptive series */

@@ -91,7 +91,7 @@ static const char *any_name(const void *context, int sequence)
 
 struct recurrences *motion_recurrences(const struct step *step)
 {
-	return recurrences_new(step, step->taylor.switching, (struct series_names){ any_name, NULL, false });
+	return recurrences_new(step, step->taylor.switching, (struct series_names){ .name = any_name });
 }
 
 /* The highest derivative of a coordinate, of which the series has h times */

@@ -6,6 +6,7 @@
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "step/contacts/series_contacts.h"
+#include "step/cost.h"
 #include "step/exponential/recipe.h"
 
 /* ---- the states ---- */
@@ -65,25 +66,113 @@ static void find_tops(struct expansion *x, int states)
 	}
 }
 
-static void lower_tops(struct expansion *x, struct recurrences *r)
+/* ---- from where on coefficients are 0 ---- */
+
+static int last_factor(const struct sequence_term *t, int last)
 {
+	while (last >= 0 && t->factor && t->factor[last] == 0)
+		last--;
+	return last;
+}
+
+/* Of the sum that it is, or that its derivative is; -1: of no terms */
+static int degree_of_sum(const struct expansion *x, const int *degree, const struct sequence *s)
+{
+	int most = -1;
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *t = &s->term[i];
+		bool pair = t->kind == TERM_PRODUCT, made = pair || t->kind == TERM_SEQUENCE;
+		int last = made ? degree[t->a] + (pair ? degree[t->b] : 0) : x->order;
+		last = last_factor(t, last > x->order ? x->order : last);
+		most = last > most ? last : most;
+	}
+	return most;
+}
+
+static bool varies(const int *degree, int sequence)
+{
+	return sequence != NONE && degree[sequence] > 0;
+}
+
+static int degree_of_solution(const struct expansion *x, const int *degree, const struct linear_equations *e)
+{
+	bool any = false;
+	for (int i = 0; i < e->n * (e->n + 1); i++)
+		any = any || varies(degree, i < e->n ? e->right[i] : e->matrix[i - e->n]);
+	return any ? x->order : 0;
+}
+
+/* Of the last that is not 0 for all states and times, as far as its recurrence tells */
+static int degree_of(const struct expansion *x, const int *degree, const struct sequence *s)
+{
+	const bool a = varies(degree, s->a), b = varies(degree, s->b);
+	switch (s->kind) {
+	case SEQUENCE_SUM:      return degree_of_sum(x, degree, s);
+	case SEQUENCE_INTEGRAL: return s->state != NONE || a || b ? 1 + degree_of_sum(x, degree, s) : 0;
+	case SEQUENCE_QUOTIENT: return b ? x->order : a ? degree[s->a] : 0;
+	case SEQUENCE_ROOT:
+	case SEQUENCE_POWER:    return a ? x->order : 0;
+	case SEQUENCE_RATE:     return degree[s->a] - 1;
+	case SEQUENCE_SOLUTION: return degree_of_solution(x, degree, s->equations);
+	default:                return b && !(a && degree[s->a] > degree[s->b]) ? degree[s->b] : a ? degree[s->a] : 0;
+	}
+}
+
+static void lower_tops(struct expansion *x)
+{
+	SCRATCH int *degree = ARRAY(int, x->count);
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (int i = 0; i < x->count; i++) {
+			int now = degree_of(x, degree, &x->sequence[i]);
+			now = now > x->order ? x->order : now;
+			changed = changed || now > degree[i];
+			degree[i] = now > degree[i] ? now : degree[i];
+		}
+	}
 	for (int i = 0; i < x->count; i++)
-		while (x->sequence[i].top > 0 && recurrence(r, i, x->sequence[i].top) == TAPE_NONE)
-			x->sequence[i].top--;
+		x->sequence[i].top = x->sequence[i].top < degree[i] ? x->sequence[i].top : degree[i];
+}
+
+static const char *place_of(const struct lines *l, int sequence, const char *k)
+{
+	return format("table_by_0[%d][%s]", l->row[sequence], k);
+}
+
+/* What precedes the loop, and the loop */
+void set_lines(struct recurrences *r, const struct expansion *x)
+{
+	const struct lines *l = x->lines;
+	struct tape *t = tape_of_recurrences(r);
+	for (int i = 0; i < x->count; i++)
+		for (int k = 0; k < l->first + l->offset[i] && l->row[i] != NONE; k++)
+			recurrence_set(r, place_of(l, i, format("%d", k)), i, k);
+	tape_statement(t, format("for (k_by_0 = %d; k_by_0 <= %d; k_by_0++) {", l->first, l->last));
+	for (int i = 0; i < x->count; i++)
+		if (l->row[i] != NONE)
+			recurrence_set(r, place_of(l, i, stage_index(l->offset[i])), i, STAGE + l->offset[i]);
+	tape_statement(t, "}");
+}
+
+static void set_series(struct recurrences *r, const struct expansion *x, int states)
+{
+	if (x->lines)
+		set_lines(r, x);
+	for (int i = 0; i < states && !x->lines; i++)
+		for (int k = 0; k <= x->order; k++)
+			recurrence_set(r, "", i, k);
+	for (int i = 0; i < x->columns && !x->lines; i++)
+		for (int k = 0; k <= x->column_top[i]; k++)
+			recurrence_set(r, "", x->column[i], k);
 }
 
 /* Of what is kept: its tape says so. */
 static void read_off(const struct step *step, struct expansion *x)
 {
 	const struct linear *system = &step->branch->system;
-	struct recurrences *r = recurrences_new(step, x, (struct series_names){ .by_numbers = false });
+	struct recurrences *r = recurrences_new(step, x, (struct series_names){ .looped = true });
 	struct tape *t = tape_of_recurrences(r);
-	for (int i = 0; i < system->states && !x->alone; i++)
-		for (int k = 0; k <= x->order; k++)
-			recurrence_set(r, "", i, k);
-	for (int i = 0; i < x->columns; i++)
-		for (int k = 0; k <= x->column_top[i]; k++)
-			recurrence_set(r, "", x->column[i], k);
+	set_series(r, x, x->alone ? 0 : system->states);
 	const char *broken = tape_check(t);
 	if (broken)
 		internal_error(step, broken);
@@ -97,8 +186,16 @@ static void read_off(const struct step *step, struct expansion *x)
 	x->slope = ARRAY(bool, system->inputs);
 	tape_mark(t, TAPE_INPUT, 0, x->input);
 	tape_mark(t, TAPE_INPUT, 1, x->slope);
-	find_tops(x, x->alone ? 0 : system->states);
-	lower_tops(x, r);
+}
+
+static void find_extent(const struct step *step, struct expansion *x)
+{
+	const int states = x->alone ? 0 : step->branch->system.states;
+	find_tops(x, states);
+	lower_tops(x);
+	if (!x->alone && multiplications_of_series(x) > LOOPED_SERIES)
+		x->lines = lines_of(x, states);
+	read_off(step, x);
 }
 
 /* ---- the whole ---- */
@@ -195,7 +292,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 	w->x->crowded = model->truncation.adaptive ? crowded_frequency(system) : 0;
 	place_unresolved(w);
 	find_implicit(w->x);
-	read_off(step, w->x);
+	find_extent(step, w->x);
 	return w->x;
 }
 
@@ -224,6 +321,6 @@ struct expansion *part_of_expansion(const struct step *step, const struct expans
 		x->sequence[i] = full->sequence[i];
 	for (int c = 0; c < x->columns; c++)
 		x->column_top[c] = order;
-	read_off(step, x);
+	find_extent(step, x);
 	return x;
 }

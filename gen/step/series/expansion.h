@@ -34,6 +34,7 @@ struct expansion {
 	/* per force column: the remainder, as a sequence; NULL: it stands in the states' sums */
 	int *force, *held;          /* held: with what holds beside it */
 	bool alone;                 /* the states' own coefficients are not wanted */
+	struct lines *lines;        /* NULL: it is short, and straight code */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
 };
 
@@ -45,6 +46,9 @@ struct series_names {               /* of a sequence's nodes, x of x_3; NULL: th
 	const char *(*name)(const void *context, int sequence);
 	const void *context;
 	bool by_numbers;            /* the state chooses by its numbers, else by intervals */
+	bool looped;                /* as a loop over k where the expansion is long */
+	/* C that factors the matrix of a system, or solves it; NULL: there is none */
+	const char *(*solver)(const void *context, const struct linear_equations *e, bool factors);
 };
 struct recurrences;
 struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names);
@@ -53,6 +57,42 @@ tape_ref recurrence_number(struct recurrences *r, int sequence, int k); /* 0 has
 void recurrence_set(struct recurrences *r, const char *target, int sequence, int k); /* target: its k-th */
 tape_ref recurrence_size(struct recurrences *r, int sequence);       /* of its first: the sum of its terms' sizes */
 tape_ref recurrence_full_size(struct recurrences *r, int sequence); /* ... of the terms that those are summed from */
+
+/* ---- lines.c: a long series as a loop over k ---- */
+
+/* What the loop reads of its k, k + offset where it is a coefficient: */
+enum stage_kind {
+	STAGE_COEFFICIENT,          /* of a */
+	STAGE_FACTOR,               /* of table a */
+	STAGE_FORCE,                /* of loads that change their formula: slot a */
+	STAGE_NUMBER,               /* k itself */
+	STAGE_INNER,                /* a_1 b_{k-1} + ... + a_{k-1} b_1 */
+	STAGE_SQUARE,               /* the same of a and a */
+	STAGE_QUOTIENT,             /* the same of a, which is made of b by division */
+	STAGE_POWER,                /* sum of (e (k-j) - j)/k a_{k-j} b_j, b is a^e */
+	STAGE_SOLVED                /* component b of the solution of system a */
+};
+struct stage_value { enum stage_kind kind; int a, b, offset; double exponent; };
+enum { STAGED = -1 };               /* TAPE_TABLE of this `part` is stage value `index` */
+struct lines {
+	int *offset;                /* per sequence: the loop at k makes its coefficient k + offset */
+	int *row;                   /* per sequence: of the table of coefficients; NONE: only the loop reads it */
+	int rows, width;            /* of that table */
+	int last;                   /* k of the loop; the first is `first` */
+	int first;
+	int values;
+	struct stage_value *value;
+	int factors;
+	double **factor;            /* [table][k], width numbers each */
+};
+/* All rows of the table, and the loop: in C table_by_0[row][k], k_by_0, and matrix_by_N[], solved_by_N[] of equations
+ * that are solved by lists */
+void set_lines(struct recurrences *r, const struct expansion *x);
+const char *stage_index(int offset);        /* C: k + offset */
+bool is_listed(const struct linear_equations *e);
+bool is_symmetric_system(const struct linear_equations *e);
+/* first[n + 1]: where the columns before row i of its factors begin in the list that is returned */
+int *factor_columns(const struct linear_equations *e, int *first);
 
 /* ---- expansion.c: the solution as a Taylor series ---- */
 

@@ -20,6 +20,15 @@ int  breakpoint_rank(const struct expansion *x, int function, int breakpoint);  
 tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
 int sequence_operands(const struct sequence *s, int **operand);
 
+/* ---- lines.c: a long series as a loop over k ---- */
+
+/* Multiplications, beyond which a series is a loop: where straight code leaves the cache of instructions. And equations
+ * beyond which they are solved by lists; k of the loop, in the place of a number */
+enum { LOOPED_SERIES = 5000, LISTED_EQUATIONS = 12, STAGE = 1 << 16 };
+struct lines *lines_of(const struct expansion *x, int states);
+int stage_value(struct lines *l, struct stage_value value);              /* its number, made once */
+int stage_factors(struct lines *l, const double *factor, int count);     /* likewise; behind `count` they are 0 */
+
 /* ---- implicit.c: how the newest coefficients enter the next ones ---- */
 
 void find_implicit(struct expansion *x);

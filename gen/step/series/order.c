@@ -37,7 +37,7 @@ int economical_order(struct step *step)
 	if (!truncation->adaptive || truncation->stages || loses_order(step->model))
 		return best;
 	double lowest = 0.95 * cost_of_order(step, best, &multiplications);
-	if (multiplications <= SHORT || multiplications > LIMIT_SERIES)
+	if (multiplications <= SHORT || step->taylor.expansion->lines)
 		return best;
 	for (int order = best - 1; order >= least; order--) {
 		double cost = cost_of_order(step, order, &multiplications);

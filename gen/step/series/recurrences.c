@@ -3,6 +3,7 @@
  * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
  * by its gains (implicit.c). */
 #include "inner.h"
+#include "step/exponential/recipe.h"
 #include "step/tapes.h"
 
 #include <math.h>
@@ -14,7 +15,8 @@ struct recurrences {
 	const struct expansion *x;
 	struct series_names names;
 	struct tape *t;
-	tape_ref *made, *early, *update; /* [sequence][k] */
+	struct lines *lines;        /* NULL: straight code */
+	tape_ref *made, *early, *update; /* [sequence][k], behind them that of the loop */
 	tape_ref *helper, *size;    /* per sequence: its inverse or half; of what its value is summed from */
 	tape_ref **gain;            /* [sequence][gain] */
 	struct solved *solved;      /* per system of linear equations */
@@ -22,7 +24,8 @@ struct recurrences {
 
 struct solved {                     /* factors of the matrix at the start, which serve all k */
 	struct tape_factors *factors;
-	tape_ref *x;                /* [k][component]; UNKNOWN: not made yet */
+	bool listed;                /* they are an array of the target, by lists */
+	tape_ref *x;                /* [k][component], likewise; UNKNOWN: not made yet */
 };
 
 static const struct sequence *sequence_of(const struct recurrences *r, int sequence)
@@ -35,7 +38,19 @@ struct tape *tape_of_recurrences(const struct recurrences *r)
 	return r->t;
 }
 
+static bool in_loop(int k)
+{
+	return k > STAGE / 2;
+}
+
 /* ---- names ---- */
+
+/* Of the loop x_by_1k: no coordinate is called so, since no name begins with a digit */
+static const char *turn_text(int k)
+{
+	const int offset = k - STAGE;
+	return !in_loop(k) ? format("%d", k) : format("by_%dk", offset < 0 ? 10 - offset : offset);
+}
 
 /* The node under the sequence's name, with a number or a word behind it */
 static tape_ref named(struct recurrences *r, tape_ref ref, int sequence, const char *what)
@@ -43,6 +58,72 @@ static tape_ref named(struct recurrences *r, tape_ref ref, int sequence, const c
 	if (r->names.name && ref != TAPE_NONE)
 		tape_name(r->t, ref, format("%s_%s", r->names.name(r->names.context, sequence), what));
 	return ref;
+}
+
+/* ---- in a loop over k ---- */
+
+/* Parts of a coefficient are made with it. */
+static void check_turn(const struct recurrences *r, int sequence, int k)
+{
+	if (in_loop(k) && k - STAGE != r->lines->offset[sequence])
+		internal_error(r->step, "a part of a coefficient is wanted in another turn of the loop");
+}
+
+static int column_of(const struct recurrences *r, int k)
+{
+	return !in_loop(k) ? k : r->x->order + 1;
+}
+
+static tape_ref *place(const struct recurrences *r, tape_ref *list, int sequence, int k)
+{
+	return &list[sequence * (r->x->order + 2) + column_of(r, k)];
+}
+
+/* What depends on the k of the loop and is no number of a node */
+static tape_ref staged(const struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent)
+{
+	const struct stage_value value = { kind, a, b, k - STAGE, exponent };
+	return tape_operand(r->t, TAPE_TABLE, stage_value(r->lines, value), STAGED);
+}
+
+/* A factor at k: a number, or one of a table times it */
+struct multiplier { double number; tape_ref table; };
+
+static struct multiplier plain(double number)
+{
+	return (struct multiplier){ number, TAPE_NONE };
+}
+
+static struct multiplier twice(struct multiplier f)
+{
+	return (struct multiplier){ 2 * f.number, f.table };
+}
+
+static tape_ref scaled(const struct recurrences *r, struct multiplier f, tape_ref ref)
+{
+	if (f.table == TAPE_NONE || ref == TAPE_NONE || f.number == 0)
+		return tape_scaled(r->t, f.number, ref);
+	return tape_scaled(r->t, f.number, tape_times_each(r->t, f.table, ref));
+}
+
+/* factor[k], of all k >= 1 the same or in a table */
+static struct multiplier factor_among(const struct recurrences *r, const double *factor, int k)
+{
+	const int order = r->x->order;
+	bool same = true;
+	if (!in_loop(k))
+		return plain(factor[k]);
+	for (int i = 2; i <= order; i++)
+		same = same && factor[i] == factor[1];
+	if (same)
+		return plain(factor[1]);
+	const int table = stage_factors(r->lines, factor, order + 1);
+	return (struct multiplier){ 1, staged(r, STAGE_FACTOR, table, NONE, k, 0) };
+}
+
+static struct multiplier factor_at(const struct recurrences *r, const struct sequence_term *term, int k)
+{
+	return term->factor ? factor_among(r, term->factor, k) : plain(1);
 }
 
 /* ---- sums ---- */
@@ -100,17 +181,39 @@ static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 }
 
 /* What is new of one sequence, times the first of another with its factor */
-static tape_ref newest(struct recurrences *r, tape_ref latest, double factor, int other)
+static tape_ref newest(struct recurrences *r, tape_ref latest, struct multiplier factor, int other)
 {
-	return times(r->t, latest, tape_scaled(r->t, factor, recurrence(r, other, 0)));
+	return latest == TAPE_NONE ? latest : times(r->t, latest, scaled(r, factor, recurrence(r, other, 0)));
+}
+
+/* Has it coefficients of the orders that the loop makes? */
+static bool goes_on(const struct recurrences *r, int sequence)
+{
+	return sequence_of(r, sequence)->top > 0;
+}
+
+/* A sum of products of what stands in the table, by a function of the target */
+static tape_ref summed(struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent)
+{
+	if (!goes_on(r, a) || !goes_on(r, b))
+		return TAPE_NONE;
+	tape_ref ref = staged(r, kind, a, b, k, exponent);
+	if (r->names.name)
+		tape_name(r->t, ref, format("%s_%s_old_%s", r->names.name(r->names.context, a),
+					    r->names.name(r->names.context, b), turn_text(k)));
+	return ref;
 }
 
 /* factor (a_1 b_{k-1} + ... + a_{k-1} b_1) */
-static void add_old(struct recurrences *r, struct list *sum, int a, int b, int k, double factor)
+static void add_old(struct recurrences *r, struct list *sum, int a, int b, int k, struct multiplier factor)
 {
 	struct tape *t = r->t;
 	struct list old = { 0 };
 	const bool square = a == b;
+	if (in_loop(k)) {
+		add(sum, scaled(r, factor, summed(r, square ? STAGE_SQUARE : STAGE_INNER, a, b, k, 0)));
+		return;
+	}
 	for (int gap = k % 2 ? 1 : 0; gap <= k - 2; gap += 2) {        /* those in the middle are the oldest */
 		int i = (k - gap) / 2, j = k - i;
 		if (i != j || !square)
@@ -120,10 +223,10 @@ static void add_old(struct recurrences *r, struct list *sum, int a, int b, int k
 	}
 	tape_ref middle = square && k % 2 == 0 ? pair(r, a, k / 2, a, k / 2) : TAPE_NONE;
 	tape_ref rest = tape_scaled(t, square ? 2 : 1, chain(t, &old));
-	if (factor == 1 && middle != TAPE_NONE)
+	if (factor.number == 1 && middle != TAPE_NONE)
 		add_two(sum, middle, rest);
 	else
-		add(sum, tape_scaled(t, factor, plus(t, middle, rest)));
+		add(sum, scaled(r, factor, plus(t, middle, rest)));
 }
 
 static tape_ref column_ref(const struct recurrences *r, int column)
@@ -135,19 +238,22 @@ static tape_ref column_ref(const struct recurrences *r, int column)
 static bool add_known(struct recurrences *r, struct list *sum, const struct sequence_term *term, int k)
 {
 	struct tape *t = r->t;
-	double factor = term->factor ? term->factor[k] : 1;
+	struct multiplier factor = factor_at(r, term, k);
 	if (term->kind == TERM_SEQUENCE || term->kind == TERM_PRODUCT)
-		return factor == 0;
+		return factor.number == 0;
 	if (term->slot >= 0) {
-		tape_ref place = tape_operand(t, TAPE_TABLE, term->slot, k), column = column_ref(r, term->a);
-		add(sum, column == TAPE_NONE ? place : times(t, place, column));
-	} else if (factor != 0) {
+		tape_ref entry = !in_loop(k) ? tape_operand(t, TAPE_TABLE, term->slot, k)
+					   : staged(r, STAGE_FORCE, term->slot, NONE, k, 0);
+		tape_ref column = column_ref(r, term->a);
+		add(sum, column == TAPE_NONE ? entry : times(t, entry, column));
+	} else if (factor.number != 0) {
 		bool slope = term->kind == TERM_SLOPE;
 		tape_ref x = term->kind == TERM_TIME    ? tape_power_of_time(t, term->a)
 			     : term->kind == TERM_PARAM ? tape_operand(t, TAPE_PARAM, term->a, 0)
 			     : term->kind == TERM_LOAD  ? column_ref(r, term->a)
 							: tape_operand(t, TAPE_INPUT, term->a, slope);
-		add(sum, x == TAPE_NONE ? tape_double(t, factor) : tape_scaled(t, factor, x));
+		tape_ref alone = factor.table == TAPE_NONE ? tape_double(t, factor.number) : factor.table;
+		add(sum, x == TAPE_NONE ? alone : scaled(r, factor, x));
 	}
 	return true;
 }
@@ -159,17 +265,17 @@ typedef tape_ref part_of(struct recurrences *r, int sequence, int k);
 static void add_term(struct recurrences *r, struct list *sum, struct list *last, const struct sequence_term *term,
 		     int k, part_of *part)
 {
-	double factor = term->factor ? term->factor[k] : 1;
+	struct multiplier factor = factor_at(r, term, k);
 	const bool square = term->a == term->b;
 	if (add_known(r, sum, term, k))
 		return;
 	if (term->kind == TERM_SEQUENCE) {
-		add(last, tape_scaled(r->t, factor, part(r, term->a, k)));
+		add(last, scaled(r, factor, part(r, term->a, k)));
 	} else if (k == 0) {
-		add(sum, tape_scaled(r->t, factor, pair(r, term->a, 0, term->b, 0)));
+		add(sum, scaled(r, factor, pair(r, term->a, 0, term->b, 0)));
 	} else {
 		add_old(r, sum, term->a, term->b, k, factor);
-		add(last, newest(r, part(r, term->a, k), square ? 2 * factor : factor, term->b));
+		add(last, newest(r, part(r, term->a, k), square ? twice(factor) : factor, term->b));
 		if (!square)
 			add(last, newest(r, part(r, term->b, k), factor, term->a));
 	}
@@ -289,7 +395,9 @@ static tape_ref quotient(struct recurrences *r, int sequence, const struct seque
 	struct list sum = { 0 };
 	tape_ref above = s->a == NONE ? TAPE_NONE : part(r, s->a, k);
 	add(&sum, times(r->t, recurrence(r, sequence, 0), part(r, s->b, k)));
-	for (int j = 1; j < k; j++)
+	if (in_loop(k))
+		add(&sum, summed(r, STAGE_QUOTIENT, sequence, s->b, k, 0));
+	for (int j = 1; j < k && !in_loop(k); j++)
 		add(&sum, pair(r, sequence, j, s->b, k - j));
 	return over(r, sequence, less(r->t, above, chain(r->t, &sum)));
 }
@@ -298,7 +406,7 @@ static tape_ref quotient(struct recurrences *r, int sequence, const struct seque
 static tape_ref root(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct list old = { 0 };
-	add_old(r, &old, sequence, sequence, k, 1);
+	add_old(r, &old, sequence, sequence, k, plain(1));
 	return over(r, sequence, less(r->t, part(r, s->a, k), chain(r->t, &old)));
 }
 
@@ -317,7 +425,9 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 	struct list sum = { 0 };
 	tape_ref newest = times(r->t, part(r, s->a, k), recurrence(r, sequence, 0));
 	add(&sum, tape_scaled(r->t, rounded_double(s->exponent), newest));
-	for (int j = 1; j < k; j++) {
+	if (in_loop(k))
+		add(&sum, summed(r, STAGE_POWER, s->a, sequence, k, rounded_double(s->exponent)));
+	for (int j = 1; j < k && !in_loop(k); j++) {
 		double factor = rounded_double((s->exponent * (k - j) - j) / k);
 		add(&sum, factor == 0 ? TAPE_NONE : tape_scaled(r->t, factor, pair(r, s->a, k - j, sequence, j)));
 	}
@@ -346,13 +456,14 @@ static tape_ref made_of(struct recurrences *r, int sequence, const struct sequen
 static tape_ref early(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = &r->early[sequence * (r->x->order + 1) + k];
+	tape_ref *ref = place(r, r->early, sequence, k);
 	if (s->known)
 		return recurrence(r, sequence, k);
 	if (!s->split)
 		return TAPE_NONE;
+	check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = named(r, made_of(r, sequence, s, k, early), sequence, format("early_%d", k));
+		*ref = named(r, made_of(r, sequence, s, k, early), sequence, format("early_%s", turn_text(k)));
 	return *ref;
 }
 
@@ -362,11 +473,12 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 static tape_ref provisional(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = &r->early[sequence * (r->x->order + 1) + k];
+	tape_ref *ref = place(r, r->early, sequence, k);
 	if (s->kind == SEQUENCE_SOLUTION)
 		return TAPE_NONE;
 	if (!s->solved)
 		return recurrence(r, sequence, k);
+	check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
 						  : made_of(r, sequence, s, k, provisional);
@@ -376,7 +488,7 @@ static tape_ref provisional(struct recurrences *r, int sequence, int k)
 /* What the k-th of solutions adds to it: it is linear in them, with factors that the first coefficients make. */
 static tape_ref update(struct recurrences *r, int sequence, int k);
 
-static tape_ref update_times(struct recurrences *r, int sequence, int k, double factor, int other)
+static tape_ref update_times(struct recurrences *r, int sequence, int k, struct multiplier factor, int other)
 {
 	tape_ref change = update(r, sequence, k);
 	return change == TAPE_NONE ? change : newest(r, change, factor, other);
@@ -387,9 +499,9 @@ static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, i
 	struct list sum = { 0 };
 	for (int i = 0; i < s->terms; i++) {
 		const struct sequence_term *term = &s->term[i];
-		double factor = term->factor ? term->factor[k] : 1;
+		struct multiplier factor = factor_at(r, term, k);
 		if (term->kind == TERM_SEQUENCE)
-			add(&sum, tape_scaled(r->t, factor, update(r, term->a, k)));
+			add(&sum, scaled(r, factor, update(r, term->a, k)));
 		if (term->kind != TERM_PRODUCT)
 			continue;
 		add(&sum, update_times(r, term->a, k, factor, term->b));
@@ -401,11 +513,12 @@ static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, i
 static tape_ref update(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = &r->update[sequence * (r->x->order + 1) + k];
+	tape_ref *ref = place(r, r->update, sequence, k);
 	if (s->kind == SEQUENCE_SOLUTION)
 		return recurrence(r, sequence, k);
 	if (!s->solved)
 		return TAPE_NONE;
+	check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_QUOTIENT ? over(r, sequence, update(r, s->a, k))
 		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
@@ -429,14 +542,41 @@ static struct tape_factors *factors_of(struct recurrences *r, const struct linea
 	return solved->factors;
 }
 
+static const char *solver_text(const struct recurrences *r, const struct linear_equations *e, bool factors)
+{
+	return r->names.solver ? r->names.solver(r->names.context, e, factors) : "";
+}
+
+/* Many equations: their matrix and right side as arrays, which functions of the target factor and solve. */
+static void solve_by_lists(struct recurrences *r, const struct linear_equations *e, const tape_ref *right, int k,
+			   tape_ref *x)
+{
+	struct solved *solved = &r->solved[e->number];
+	struct tape *t = r->t;
+	for (int i = 0; i < e->n * e->n && !solved->listed; i++)
+		if (e->matrix[i] != NONE)
+			tape_set(t, format("matrix_by_%d[%d]", e->number, i), entry(r, e->matrix[i]), 10, NULL);
+	if (!solved->listed)
+		tape_statement(t, solver_text(r, e, true));
+	solved->listed = true;
+	for (int i = 0; i < e->n; i++)
+		tape_set(t, format("solved_by_%d[%d]", e->number, i),
+			 right[i] == TAPE_NONE ? tape_number(t, 0) : right[i], 10, NULL);
+	tape_statement(t, solver_text(r, e, false));
+	for (int i = 0; i < e->n; i++)
+		x[i] = staged(r, STAGE_SOLVED, e->number, i, k, 0);
+}
+
 static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
 {
 	const struct linear_equations *e = s->equations;
-	tape_ref *x = &r->solved[e->number].x[k * e->n];
+	tape_ref *x = &r->solved[e->number].x[column_of(r, k) * e->n];
 	SCRATCH tape_ref *right = ARRAY(tape_ref, e->n);
 	for (int i = 0; i < e->n && x[0] == UNKNOWN; i++)
 		right[i] = k == 0 ? entry(r, e->right[i]) : less(r->t, TAPE_NONE, provisional(r, e->residual[i], k));
-	if (x[0] == UNKNOWN)
+	if (x[0] == UNKNOWN && r->lines && is_listed(e))
+		solve_by_lists(r, e, right, k, x);
+	else if (x[0] == UNKNOWN)
 		tape_solve(factors_of(r, e), right, x);
 	return x[s->component];
 }
@@ -545,19 +685,28 @@ static const struct sequence_term *plain_term(const struct recurrences *r, const
 	return only;
 }
 
+/* 1/(k + 1) */
+static struct multiplier part_at(struct recurrences *r, int k)
+{
+	SCRATCH double *part = ARRAY(double, r->x->order + 1);
+	for (int i = 0; i <= r->x->order; i++)
+		part[i] = rounded_double(1.0 / (i + 1));
+	return factor_among(r, part, k);
+}
+
 /* early part + sum of gains times the k-th of the others, over k + 1 of an integral */
 static tape_ref joined(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	struct tape *t = r->t;
 	tape_ref all = s->split ? early(r, sequence, k) : made_of(r, sequence, s, k, early);
 	for (int i = 0; i < s->gains; i++) {
-		const struct sequence_term *plain = plain_term(r, s, s->gain[i]);
+		const struct sequence_term *only = plain_term(r, s, s->gain[i]);
 		tape_ref latest = recurrence(r, s->gain[i], k);
 		if (latest == TAPE_NONE)
 			continue;
-		double factor = s->kind == SEQUENCE_INTEGRAL ? rounded_double(1.0 / (k + 1)) : 1;
-		all = plus(t, all, plain ? tape_scaled(t, plain->factor[k], latest)
-					 : times(t, latest, tape_scaled(t, factor, own_gain(r, sequence, i))));
+		struct multiplier factor = s->kind == SEQUENCE_INTEGRAL ? part_at(r, k) : plain(1);
+		all = plus(t, all, only ? scaled(r, factor_at(r, only, k), latest)
+					: times(t, latest, scaled(r, factor, own_gain(r, sequence, i))));
 	}
 	return all;
 }
@@ -586,11 +735,16 @@ static bool is_constant_sequence(struct recurrences *r, int sequence)
 	return sequence == NONE || recurrence(r, sequence, 1) == TAPE_NONE;
 }
 
+static struct multiplier number_at(const struct recurrences *r, int k)
+{
+	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
+}
+
 static tape_ref made(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	const bool integral = s->kind == SEQUENCE_INTEGRAL;
 	if (s->kind == SEQUENCE_RATE)
-		return tape_scaled(r->t, k + 1, recurrence(r, s->a, k + 1));
+		return scaled(r, number_at(r, k + 1), recurrence(r, s->a, k + 1));
 	if (s->kind == SEQUENCE_CHOICE && !(s->solved && k > 0))
 		return choice(r, s, k, recurrence);
 	if (s->kind == SEQUENCE_SOLUTION)
@@ -608,9 +762,13 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 tape_ref recurrence(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = &r->made[sequence * (r->x->order + 1) + k];
+	tape_ref *ref = place(r, r->made, sequence, k);
+	if (in_loop(k) && !goes_on(r, sequence))
+		return TAPE_NONE;
+	if (in_loop(k) && k - STAGE < r->lines->offset[sequence])
+		return staged(r, STAGE_COEFFICIENT, sequence, NONE, k, 0);
 	if (*ref == UNKNOWN)
-		*ref = named(r, made(r, sequence, s, k), sequence, format("%d", k));
+		*ref = named(r, made(r, sequence, s, k), sequence, turn_text(k));
 	if (*ref == TAPE_NONE && k == 0)
 		*ref = tape_number(r->t, 0);
 	return *ref;
@@ -638,8 +796,9 @@ static tape_ref *unmade(int count, tape_ref what)
 struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names)
 {
 	struct recurrences *r = NEW(struct recurrences);
-	int all = x->count * (x->order + 1);
+	int all = x->count * (x->order + 2);
 	*r = (struct recurrences){ .step = step, .x = x, .names = names, .t = tape_new(),
+				   .lines = names.looped ? x->lines : NULL,
 				   .made = unmade(all, UNKNOWN), .early = unmade(all, UNKNOWN),
 				   .update = unmade(all, UNKNOWN),
 				   .helper = unmade(x->count, TAPE_NONE), .size = unmade(x->count, TAPE_NONE) };
@@ -649,7 +808,7 @@ struct recurrences *recurrences_new(const struct step *step, const struct expans
 		const struct linear_equations *e = x->sequence[i].equations;
 		r->gain[i] = unmade(x->sequence[i].gains, TAPE_NONE);
 		if (e)
-			r->solved[e->number].x = unmade(e->n * (x->order + 1), UNKNOWN);
+			r->solved[e->number].x = unmade(e->n * (x->order + 2), UNKNOWN);
 	}
 	return r;
 }

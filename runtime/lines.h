@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* lines.h: what a long Taylor series asks of its coefficients so far, by loops: sums of products, and linear equations.
+ * Included by the file of each model before its series, which defines which of them it has:
+ *
+ *     PL_INNERS, PL_SQUARES      of two sequences, of one with itself
+ *     PL_DIVIDED, PL_POWERS      of what is made by division, of powers
+ *     PL_SOLVES                  linear equations
+ *
+ * Each sum has the order of the same series in straight code, from what stands in the middle to both ends, in two
+ * chains where it is long. */
+#include "numbers.h"
+
+#if PL_INNERS
+/* a[1] b[k-1] + ... + a[k-1] b[1] */
+static real PL(inner)(const real *a, const real *b, int k)
+{
+    real sum[2] = {0, 0};
+    int i = k / 2, j = k - i;
+    if (i == j && i > 0) { /* in the middle, the first of the first chain */
+        sum[0] = a[i] * b[i];
+        i--;
+        j++;
+        if (k <= 4) { /* at most four terms: one chain */
+            return i > 0 ? sum[0] + a[i] * b[j] + a[j] * b[i] : sum[0];
+        }
+        for (; i > 0; i--, j++) {
+            sum[1] += a[i] * b[j];
+            sum[0] += a[j] * b[i];
+        }
+        return sum[0] + sum[1];
+    }
+    if (k <= 5) {
+        for (; i > 0; i--, j++) {
+            sum[0] = sum[0] + a[i] * b[j] + a[j] * b[i];
+        }
+        return sum[0];
+    }
+    for (; i > 0; i--, j++) {
+        sum[0] += a[i] * b[j];
+        sum[1] += a[j] * b[i];
+    }
+    return sum[0] + sum[1];
+}
+#endif
+
+#if PL_SQUARES
+/* The same of a and a: each pair once, twice over */
+static real PL(inner_square)(const real *a, int k)
+{
+    real sum[2] = {0, 0};
+    int i = (k - 1) / 2, j = k - i;
+    if (i <= 4) {
+        for (; i > 0; i--, j++) {
+            sum[0] += a[i] * a[j];
+        }
+    }
+    for (; i > 0; i -= 2, j += 2) {
+        sum[0] += a[i] * a[j];
+        sum[1] += i > 1 ? a[i - 1] * a[j + 1] : 0;
+    }
+    sum[0] = 2 * (sum[0] + sum[1]);
+    return k % 2 ? sum[0] : a[k / 2] * a[k / 2] + sum[0];
+}
+#endif
+
+#if PL_DIVIDED
+/* c[1] b[k-1] + ... + c[k-1] b[1] */
+static real PL(inner_of_quotient)(const real *c, const real *b, int k)
+{
+    real sum[2] = {0, 0};
+    int j;
+    for (j = 1; j + 1 < k; j += 2) {
+        sum[0] += c[j] * b[k - j];
+        sum[1] += c[j + 1] * b[k - j - 1];
+    }
+    return sum[0] + sum[1] + (j < k ? c[j] * b[k - j] : 0);
+}
+#endif
+
+#if PL_POWERS
+/* The sum over 0 < j < k of (e (k - j) - j)/k a[k-j] c[j]: c is a^e */
+static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
+{
+    real sum = 0;
+    int j;
+    for (j = 1; j < k; j++) {
+        sum += (e * (real)(k - j) - (real)j) / (real)k * (a[k - j] * c[j]);
+    }
+    return sum;
+}
+#endif
+
+#if PL_SOLVES
+/* m, n x n, becomes factors of itself, row after row, as L D U with D U above the diagonal turned: below it stands L D,
+ * above it U, on it 1/D. before[first[i]] to before[first[i+1]]: the columns below i where row i of L is not 0, rising;
+ * those of U are the same.  A symmetric matrix is read below its diagonal. */
+static void PL(factor_by_lists)(int n, int symmetric, const short *first, const short *before, real *m)
+{
+    int i, p, q;
+    for (i = 0; i < n; i++) {
+        real *const row = m + i * n;
+        real pivot = row[i];
+        for (p = first[i]; p < first[i + 1]; p++) {
+            const int j = before[p];
+            real left = row[j], right = symmetric ? 0 : m[j * n + i];
+            for (q = first[j]; q < first[j + 1]; q++) {
+                left -= row[before[q]] * m[before[q] * n + j];
+                right -= symmetric ? 0 : m[j * n + before[q]] * m[before[q] * n + i];
+            }
+            row[j] = left;
+            m[j * n + i] = (symmetric ? left : right) * m[j * n + j];
+            pivot -= left * m[j * n + i];
+        }
+        row[i] = 1 / pivot;
+    }
+}
+
+/* x, the right side, becomes the solution */
+static void PL(solve_by_lists)(int n, const short *first, const short *before, const real *m, real *x)
+{
+    int i, p;
+    for (i = 0; i < n; i++) {
+        for (p = first[i]; p < first[i + 1]; p++) {
+            x[i] -= m[i * n + before[p]] * x[before[p]];
+        }
+        x[i] *= m[i * n + i];
+    }
+    for (i = n - 1; i > 0; i--) {
+        for (p = first[i]; p < first[i + 1]; p++) {
+            x[before[p]] -= m[before[p] * n + i] * x[i];
+        }
+    }
+}
+#endif
+
+#include "undef.h"
