@@ -65,6 +65,7 @@ bool rhs_needs_math(const struct emitter *e);
 /* ---- emit_constraints.c ---- */
 
 void emit_constraints(const struct emitter *e);                   /* NAME_misses, where there are some */
+bool constraints_need_math(const struct emitter *e);
 
 /* ---- emit_normal.c: steps in normal modes ---- */
 
