@@ -58,6 +58,15 @@ static void join_terms(struct dependences *l, const struct form *form)
 	}
 }
 
+/* What follows from the rows before is not kept: of M(q) there are as many operands as n^2 in each of n solutions. */
+static void add_row(struct echelon *e, mpq_t *row)
+{
+	const int rank = e->rank;
+	echelon_add(e, row);
+	if (e->rank == rank)
+		rationals_free(row, (size_t)e->width);
+}
+
 static void look_at(struct dependences *l, const struct form *form, int own)
 {
 	int n = l->model->n;
@@ -81,8 +90,8 @@ static void look_at(struct dependences *l, const struct form *form, int own)
 			look_at(l, atom->operand[k], own);
 		l->seen[atom->index] = true;
 	}
-	echelon_add(&l->place, place);
-	echelon_add(&l->rate, rate);
+	add_row(&l->place, place);
+	add_row(&l->rate, rate);
 }
 
 /* An atom is looked at once, but joins all equations in which it stands. */
