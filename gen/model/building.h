@@ -81,6 +81,7 @@ const struct form *nominal_form(struct building *b, const struct form *form);
 bool parts_params(const struct building *b);
 void fill_loads(struct building *b, int segment, int row, const struct form *residual);
 void place_loads(struct building *b, const struct form *form); /* every load of the form gets load states */
+void place_loads_within(struct building *b, const struct form *form); /* of what is in its atoms too */
 void spread_loads(struct building *b, const struct form *form,
 		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
 /* one row of everything */

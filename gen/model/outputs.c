@@ -350,13 +350,6 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 
 /* ---- outputs that are not linear ---- */
 
-static void place_output_forcings(struct building *b, bool *seen, const struct form *form)
-{
-	for (const struct form_term **term = terms_within(form, seen); *term; term++)
-		if ((*term)->basis.kind == BASIS_FORCING && !is_polynomial((*term)->basis.forcing))
-			place_loads(b, form_single((*term)->basis, (*term)->factor));
-}
-
 /* The highest derivatives that they read, each as a row of its own */
 static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
 {
@@ -427,8 +420,7 @@ void build_outputs(struct building *b)
 		for (int s = 0; s < system->segments && model->output[i].form; s++)
 			place_loads(b, output_form(b, &model->output[i], s));
 	for (int i = 0; i < model->outputs; i++)
-		place_output_forcings(b, ARRAY(bool, (size_t)atoms_count(model->equations.atoms)),
-				      model->output[i].left);
+		place_loads_within(b, model->output[i].left);
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
 		if (output->statement != reported && !check_output(model, output))

@@ -301,13 +301,6 @@ static void resolve_impacts(void *context)
 		abandon();
 }
 
-static void refuse_beside_constraints(void *context)
-{
-	const struct building *b = context;
-	const struct place at = b->segment_equations->constraint[0].statement->at;
-	refuse(CAN_CONTACTS, b->model, b->spec->whens > 0 ? b->spec->when->at : at);
-}
-
 static void report_friction_stands(void *context)
 {
 	report_no_friction(context);
@@ -337,8 +330,6 @@ static bool choose_scheme(struct building *b)
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->contacts.impacts == 0;
 	const bool constrained = b->spec->count.multipliers > 0, exact = !constrained && is_piecewise_linear(b);
-	if (constrained && (model->contacts.impacts > 0 || holds_friction(b)))
-		return statement_guard(refuse_beside_constraints, b);
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
@@ -370,8 +361,9 @@ static bool choose_scheme(struct building *b)
 	model->remainder.loads = b->full && (b->request->loads_left || scheme_row(model->scheme)->modes);
 	if (b->full && !diagnostics_errors())
 		statement_guard(part_loads, b);
-	if (b->full && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)))
-		statement_guard(choose_beside_contacts, b);
+	if (b->full && !diagnostics_errors() && (model->contacts.impacts > 0 || holds_friction(b)) &&
+	    !statement_guard(choose_beside_contacts, b))
+		return false;
 	return !diagnostics_errors();
 }
 

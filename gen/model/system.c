@@ -53,6 +53,14 @@ void place_loads(struct building *b, const struct form *form)
 	}
 }
 
+void place_loads_within(struct building *b, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_FORCING && !is_polynomial((*term)->basis.forcing))
+			place_loads(b, form_single((*term)->basis, (*term)->factor));
+}
+
 /* value[load][column] of the terms of a form; `spread` is called for each */
 void spread_loads(struct building *b, const struct form *form,
 		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context)

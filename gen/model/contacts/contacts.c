@@ -16,6 +16,17 @@ static int drag_of(const struct model *model, const struct atom *atom)
 	return index;
 }
 
+/* It would have to be solved for with the accelerations. */
+static void check_no_highest(const struct building *b, const struct node *node, const struct form *force)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (const struct form_term **term = terms_within(force, seen); *term; term++)
+		if (is_highest(&b->model->frame, &(*term)->basis))
+			error(node->start, "a formula of the state and of time is built",
+			      "friction by an acceleration or a reaction, '%s', is not built",
+			      text_between(node->start, node->end));
+}
+
 static void add_drag(struct building *b, const struct atom *a)
 {
 	struct model *model = b->model;
@@ -32,8 +43,10 @@ static void add_drag(struct building *b, const struct atom *a)
 			      "the velocity of friction is linear in velocities");
 	}
 	RATIONAL start = ZERO;
-	for (int i = 1; i < a->operands; i++)
+	for (int i = 1; i < a->operands; i++) {
+		check_no_highest(b, a->node->child[i], a->operand[i]);
 		check_force(a->node->child[i], a->operand[i], start, NULL);
+	}
 	*MORE(model->contacts.drag, model->contacts.drags) =
 		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1], NULL };
 	find_moving_drag(b, &model->contacts.drag[model->contacts.drags - 1]);
@@ -83,6 +96,35 @@ static void refuse_acceleration(const struct building *b, const struct output *o
 			refuse(CAN_ACCELERATION, b->model, output->value->start);
 }
 
+/* A multiplier as a text has it, through lets */
+static const struct node *multiplier_in(const struct node *node)
+{
+	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
+	const struct node *found = symbol && symbol->kind == SYMBOL_MULTIPLIER ? node : NULL;
+	if (symbol && symbol->kind == SYMBOL_LET && symbol->value && multiplier_in(symbol->value))
+		found = node;
+	for (int i = 0; i < node->children && !found; i++)
+		found = multiplier_in(node->child[i]);
+	return found;
+}
+
+/* The equations of a mechanism are solved without what holds, in outputs. */
+static void refuse_of_mechanism(const struct building *b, const struct output *output, const struct form *form)
+{
+	const struct model *model = b->model;
+	const struct node *multiplier = output->value ? multiplier_in(output->value) : NULL;
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool drags = false;
+	for (int i = 0; i < model->contacts.drags; i++)
+		drags = drags || model->contacts.drag[i].moving;
+	if (multiplier && (drags || has_bounces(model)))
+		error(multiplier->start, "its force is that of smooth motion; a stiff spring in its place has one",
+		      "'%s' beside friction or stops is no output", text_between(multiplier->start, multiplier->end));
+	for (const struct form_term **term = terms_within(form, seen); *term && drags; term++)
+		if (is_highest(&b->model->frame, &(*term)->basis))
+			refuse(CAN_CARRIED, model, output->value->start);
+}
+
 struct asking {
 	const struct building *b;
 	const struct output *output;
@@ -96,6 +138,8 @@ static void check_output(void *context)
 	size_t atoms = (size_t)atoms_count(b->collector.atoms);
 	bool *seen = ARRAY(bool, atoms), *read = ARRAY(bool, atoms);
 	const struct form *form = work->output->form ? work->output->form : work->output->left;
+	if (form)
+		refuse_of_mechanism(b, work->output, form);
 	if (form && has_bounces(model))
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
@@ -124,6 +168,17 @@ void find_contacts(struct building *b)
 	find_masses(b);
 }
 
+/* Of what moves; their derivatives have no other */
+static void place_loads_that_move(struct building *b, const struct moving_contact *c)
+{
+	for (int j = 0; j < b->model->n && c; j++) {
+		place_loads_within(b, c->gradient[j]);
+		place_loads_within(b, c->push[j]);
+	}
+	if (c)
+		place_loads_within(b, c->rest);
+}
+
 void place_contact_loads(struct building *b)
 {
 	const struct model *model = b->model;
@@ -132,6 +187,11 @@ void place_contact_loads(struct building *b)
 		const bool bounces = model->contacts.impact[i].bounces;
 		place_loads(b, impact_law->guard);
 		place_loads(b, impact_law->speed);
+		if (impact_law->moving) {
+			place_loads_within(b, impact_law->guard);
+			place_loads_within(b, impact_law->speed);
+			place_loads_that_move(b, impact_law->moving);
+		}
 		if (bounces)
 			place_loads(b, impact_law->press);
 		for (int k = 0; k < impact_law->jumps; k++)
@@ -140,6 +200,7 @@ void place_contact_loads(struct building *b)
 			place_loads(b, impact_law->still[k].form);
 	}
 	for (int i = 0; i < model->contacts.drags; i++) {
+		place_loads_that_move(b, model->contacts.drag[i].moving);
 		place_loads(b, model->contacts.drag[i].velocity);
 		place_loads(b, model->contacts.drag[i].rate);
 		place_loads(b, model->contacts.drag[i].force);

@@ -12,6 +12,7 @@ struct moving_contact {             /* of a velocity: its direction or the mass 
 	const struct form **force;  /* per coordinate: what 1 of its force adds to the left side of its equation */
 	const struct form **push;   /* per coordinate: what 1 of its force takes from the highest derivative */
 	const struct form *rest;    /* its rate where highest derivatives are 0 */
+	int only;                   /* the coordinate whose velocity alone moves it; -1: there are several */
 	double *sample;             /* the gradient somewhere: by that it is seen which depend on each other */
 };
 struct jump {                       /* a state just behind an impact, over states, loads and inputs before it */

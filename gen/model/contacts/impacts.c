@@ -18,13 +18,19 @@ static struct form *scalar_form(struct building *b, struct node *node)
 	return value->cell[0];
 }
 
+static void check_not_tuned(const struct node *node, const char *what)
+{
+	const struct node *tuned = first_tuned(node);
+	if (tuned)
+		error(tuned->at, "beside a series it may stand in forces, loads and the force of friction",
+		      "%s takes no tunable param beside the remainder: '%s'", what, tuned->symbol->name);
+}
+
 static void check_linear(const struct building *b, const struct node *node, const struct form *form, const char *what)
 {
 	for (int i = 0; i < form->terms; i++) {
-		const struct node *tuned = form->term[i].basis.kind == BASIS_ATOM ? first_tuned(node) : NULL;
-		if (tuned)
-			error(tuned->at, "beside a series it may stand in forces, loads and the force of friction",
-			      "%s takes no tunable param beside the remainder: '%s'", what, tuned->symbol->name);
+		if (form->term[i].basis.kind == BASIS_ATOM)
+			check_not_tuned(node, what);
 		if (form->term[i].basis.kind == BASIS_ATOM)
 			error(node->start, NULL, "%s is linear in states, loads and inputs, and '%s' is not", what,
 			      text_between(node->start, node->end));
@@ -44,6 +50,8 @@ static bool is_rising(const struct when *when)
 static void check_stop(struct building *b, const struct when *when, mpq_ptr restitution, mpq_ptr gap)
 {
 	collect_constant(&b->collector, when->restitution, restitution);
+	if (b->collector.params == PARAMS_ATOMS)
+		check_not_tuned(when->restitution, "a restitution");
 	if (mpq_sgn(restitution) < 0 || mpq_cmp_ui(restitution, 1, 1) > 0)
 		error(when->restitution->start, "the part of the speed that comes back, 0 to 1",
 		      "restitution %s is not within 0 and 1", readable_text(restitution));

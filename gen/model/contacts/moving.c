@@ -82,13 +82,36 @@ static struct point *some_point(struct building *b)
 
 struct sampling { struct building *b; const struct form **gradient; double *sample; };
 
+static void take_out(int n, const double *direction, double *from)
+{
+	double product = 0, square = 0;
+	for (int j = 0; j < n; j++) {
+		product += direction[j] * from[j];
+		square += direction[j] * direction[j];
+	}
+	for (int j = 0; j < n && square > 0; j++)
+		from[j] -= product / square * direction[j];
+}
+
+/* Without what constraints take from it: where they leave nothing it depends on them. */
 static void sample_gradient(void *context)
 {
 	struct sampling *work = context;
-	struct point *point = some_point(work->b);
+	struct building *b = work->b;
+	const int n = b->model->n, constraints = b->spec->count.multipliers;
+	double *held = ARRAY(double, constraints * n);
+	struct point *point = some_point(b);
 	point_at_values(point);
-	for (int j = 0; j < work->b->model->n; j++)
-		work->sample[j] = value_at(work->b, point, work->gradient[j]);
+	for (int j = 0; j < n; j++)
+		work->sample[j] = value_at(b, point, work->gradient[j]);
+	for (int i = 0; i < constraints; i++) {
+		const struct form **gradient = gradient_of(b, b->full->constraint[i].by[1], 1);
+		for (int j = 0; j < n; j++)
+			held[i * n + j] = value_at(b, point, gradient[j]);
+		for (int k = 0; k < i; k++)
+			take_out(n, held + k * n, held + i * n);
+		take_out(n, held + i * n, work->sample);
+	}
 }
 
 /* ---- the sign of what answers ---- */
@@ -122,8 +145,30 @@ static int sign_at_start(struct building *b, const struct moving_contact *c)
 
 /* ---- the whole ---- */
 
-static struct moving_contact *moving_contact(struct building *b, const struct form **gradient,
-					     const struct form **force, const struct form *rate)
+/* n(q) q', where that is all of the velocity */
+static int only_coordinate(struct building *b, const struct node *node, const struct form **gradient,
+			   const struct form *velocity)
+{
+	int only = -1;
+	for (int j = 0; j < b->model->n; j++) {
+		if (gradient[j]->terms == 0)
+			continue;
+		if (only >= 0)
+			return -1;
+		only = j;
+	}
+	if (only < 0)
+		return -1;
+	struct form *speed = form_unit((struct basis){ .kind = BASIS_COORD, .index = only, .order = 1 });
+	b->collector.equation = true;
+	speed = kept_product(&b->collector, node, gradient[only], speed);
+	b->collector.equation = false;
+	return form_difference(velocity, speed)->terms == 0 ? only : -1;
+}
+
+static struct moving_contact *moving_contact(struct building *b, const struct node *node,
+					     const struct form **gradient, const struct form **force,
+					     const struct form *velocity, const struct form *rate)
 {
 	const int n = b->model->n;
 	struct moving_contact *c = NEW(struct moving_contact);
@@ -131,7 +176,7 @@ static struct moving_contact *moving_contact(struct building *b, const struct fo
 	for (int j = 0; j < n; j++)
 		row[b->owner[j]] = force[j];
 	*c = (struct moving_contact){ gradient, force, accelerations_by(b, row), form_at_rest(b, rate),
-				      ARRAY(double, n) };
+				      only_coordinate(b, node, gradient, velocity), ARRAY(double, n) };
 	if (!silent_guard(sample_gradient, &(struct sampling){ b, gradient, c->sample }))
 		for (int j = 0; j < n; j++)
 			c->sample[j] = gradient[j]->terms ? 1 : 0;
@@ -191,7 +236,7 @@ void find_moving_impact(struct building *b, struct impact *impact)
 			error(impact->when->at, "a mass, or an equation with its second derivative",
 			      "an impact needs a mass: %s is of first order", b->model->names.coord[j]);
 	law->press = rate_with_atoms(b, law->speed);
-	law->moving = moving_contact(b, gradient, gradient, law->press);
+	law->moving = moving_contact(b, impact->when->guard, gradient, gradient, law->speed, law->press);
 	if (sign_at_start(b, law->moving) == -1)
 		error(impact->when->at, NULL, "the masses at this stop do not make a force part them");
 }
@@ -218,7 +263,8 @@ void find_moving_drag(struct building *b, struct drag *drag)
 	if (!moves)
 		return;
 	drag->rate = rate_with_atoms(b, drag->velocity);
-	drag->moving = moving_contact(b, gradient_of(b, drag->velocity, 1), force, drag->rate);
+	drag->moving = moving_contact(b, drag->atom->node, gradient_of(b, drag->velocity, 1), force, drag->velocity,
+				      drag->rate);
 	int sign = sign_at_start(b, drag->moving);
 	if (sign == 0)
 		error(drag->atom->node->at, "its velocity has to answer to its force",

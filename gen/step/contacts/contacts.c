@@ -180,10 +180,9 @@ static bool are_dependent(const struct constraints *all, int count, const int *w
 /* Sets of few come first, so that those with a conflict in them are not noted again. */
 static void note_conflicts(const struct constraints *all, int members, const int *member)
 {
-	int *which = ARRAY(int, members);
 	for (int size = 2; size <= members; size++)
 		for (int set = 0; set < 1 << members; set++) {
-			int count = 0;
+			int count = 0, *which = ARRAY(int, members);
 			for (int i = 0; i < members; i++)
 				if (set >> i & 1)
 					which[count++] = member[i];
@@ -325,7 +324,6 @@ static int pull_sequence(const struct constraints *all, int index, long sign, co
 {
 	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
-	const int rest = drag ? rest_sequence(w, drag) : NONE;
 	RATIONAL minus = RATIO(-1, 1), factor = ZERO;
 	struct sum sum = { 0 }, rate = { 0 };
 	mpq_set_si(factor, sign, 1);
@@ -334,7 +332,7 @@ static int pull_sequence(const struct constraints *all, int index, long sign, co
 	else
 		sum = needed_force(all, index, sign);
 	if (drag)
-		sum_add(&sum, TERM_SEQUENCE, rest, 0, minus);
+		sum_add(&sum, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
 	if (!h->solved)
 		return sum_sequence(w, &sum);
 	if (!drag || drag->rest == drag->force) {
@@ -399,26 +397,33 @@ static void assign(struct constraints *all, const struct jump *jump, int jumps)
 	}
 }
 
-/* v - (1 + e) d s of each velocity, d what is watched; e = 0 where it comes to rest */
+/* v - (1 + e) d s, d what is watched; e = 0 where it comes to rest */
+static int velocity_behind(struct sequencing *w, const struct impact_law *law, int state, int d, bool still)
+{
+	const int speed = sequence_of_form(w, law->speed);
+	RATIONAL one = RATIO(1, 1), factor = RATIO(-1, 1);
+	struct sum sum = { 0 };
+	if (!still)
+		mpq_sub(factor, factor, law->restitution);
+	sum_add(&sum, TERM_SEQUENCE, state, 0, one);
+	sum_add(&sum, TERM_PRODUCT, speed < d ? speed : d, speed < d ? d : speed, factor);
+	return sum_sequence(w, &sum);
+}
+
 static void assign_moving(struct constraints *all, int index, int hold, bool still)
 {
 	struct sequencing *w = all->w;
 	const struct impact_law *law = w->step->model->contacts.impact[index].in;
-	const int speed = sequence_of_form(w, law->speed);
 	struct contacts *c = all->c;
-	RATIONAL one = RATIO(1, 1), factor = RATIO(-1, 1);
-	if (!still)
-		mpq_sub(factor, factor, law->restitution);
+	/* Where it alone moves the guard it is 0 at rest, exactly. */
+	const int only = law->moving->only < 0 ? NONE : w->system->velocity[law->moving->only];
 	for (int i = 0; i < w->system->states; i++) {
 		const int back = c->hold[hold].back_watch[i];
-		struct sum sum = { 0 };
 		if (back == NONE)
 			continue;
-		const int d = c->watch[back].sequence;
-		sum_add(&sum, TERM_SEQUENCE, i, 0, one);
-		sum_add(&sum, TERM_PRODUCT, speed < d ? speed : d, speed < d ? d : speed, factor);
-		*MORE(c->assignment, c->assignments) =
-			(struct series_jump){ i, watch(w, sum_sequence(w, &sum), false) };
+		int d = c->watch[back].sequence, value = velocity_behind(w, law, i, d, still);
+		value = watch(w, still && i == only ? all->none : value, false);
+		*MORE(c->assignment, c->assignments) = (struct series_jump){ i, value };
 	}
 }
 
@@ -490,11 +495,13 @@ static void watch_impact(struct constraints *all, int index)
 /* ---- the whole ---- */
 
 /* The only state of a velocity that no load moves; else NONE */
-static int only_state(const struct sequencing *w, const struct form *velocity)
+static int only_state(const struct sequencing *w, const struct constraint *h)
 {
 	int state = NONE;
-	for (int i = 0; i < velocity->terms; i++) {
-		const struct basis *basis = &velocity->term[i].basis;
+	if (h->moving && h->moving->only >= 0)
+		return w->system->velocity[h->moving->only];
+	for (int i = 0; i < h->velocity->terms; i++) {
+		const struct basis *basis = &h->velocity->term[i].basis;
 		if (basis->kind <= BASIS_PI)
 			continue;
 		if (basis->kind != BASIS_COORD || state != NONE)
@@ -581,13 +588,13 @@ void hold_contacts(struct sequencing *w)
 	make_forces(&all);
 	for (int i = 0; i < all.constraints; i++)
 		watch_hold(&all, i);
-	for (int i = 0; i < model->contacts.impacts; i++)
+	for (int i = 0; i < c->series_impacts; i++)
 		watch_impact(&all, i);
 	sort_watches(c, w->system->states);
 	for (int i = 0; i < all.constraints; i++) {
 		c->hold[i].force = all.constraint[i].force;
 		c->hold[i].force_direction = all.constraint[i].slope_direction;
 		c->hold[i].gives = all.constraint[i].gives;
-		c->hold[i].only = only_state(w, all.constraint[i].velocity);
+		c->hold[i].only = only_state(w, &all.constraint[i]);
 	}
 }

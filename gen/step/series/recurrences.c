@@ -339,7 +339,43 @@ tape_ref recurrence_size(struct recurrences *r, int sequence)
 static bool has_parts(const struct recurrences *r, int sequence)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || (s->kind == SEQUENCE_SUM && s->terms > 0));
+	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || s->kind == SEQUENCE_SOLUTION ||
+				    (s->kind == SEQUENCE_SUM && s->terms > 0));
+}
+
+static tape_ref times_size(struct recurrences *r, tape_ref size, int sequence)
+{
+	return times(r->t, size, size_of_value(r, sequence));
+}
+
+/* By its own row: what M_jj x_j is the sum of, over M_jj. Where that is 0 or chosen it is a force. */
+static tape_ref size_of_solution(struct recurrences *r, int sequence)
+{
+	const struct linear_equations *e = sequence_of(r, sequence)->equations;
+	const int j = sequence_of(r, sequence)->component, *row = e->matrix + j * e->n;
+	tape_ref all = e->right[j] == NONE ? TAPE_NONE : recurrence_full_size(r, e->right[j]);
+	if (row[j] == NONE || sequence_of(r, row[j])->kind == SEQUENCE_CHOICE)
+		return size_of_value(r, sequence);
+	for (int k = 0; k < e->n; k++)
+		if (k != j && row[k] != NONE)
+			all = plus(r->t, all, times_size(r, size_of_value(r, e->first + k), row[k]));
+	return all == TAPE_NONE ? size_of_value(r, sequence)
+				: tape_binary(r->t, TAPE_DIV, all, size_of_value(r, row[j]));
+}
+
+static bool is_solved(const struct recurrences *r, int sequence)
+{
+	return sequence_of(r, sequence)->solved || sequence_of(r, sequence)->kind == SEQUENCE_SOLUTION;
+}
+
+/* A product with what a solution stands in; TAPE_NONE: it is none */
+static tape_ref size_of_product(struct recurrences *r, const struct sequence_term *term)
+{
+	if (term->kind != TERM_PRODUCT || (!is_solved(r, term->a) && !is_solved(r, term->b)))
+		return TAPE_NONE;
+	const bool first = is_solved(r, term->a);
+	tape_ref size = recurrence_full_size(r, first ? term->a : term->b);
+	return times(r->t, tape_double(r->t, fabs(term->factor[0])), times_size(r, size, first ? term->b : term->a));
 }
 
 tape_ref recurrence_full_size(struct recurrences *r, int sequence)
@@ -357,10 +393,14 @@ tape_ref recurrence_full_size(struct recurrences *r, int sequence)
 		if (term->kind == TERM_SEQUENCE && has_parts(r, term->a))
 			all = plus(t, all, times(t, tape_double(t, fabs(term->factor[0])),
 						 recurrence_full_size(r, term->a)));
+		else if (size_of_product(r, term) != TAPE_NONE)
+			all = plus(t, all, size_of_product(r, term));
 		else
 			add_term(r, &sum, &last, term, 0, recurrence);
 	}
 	all = add_sizes(r, add_sizes(r, all, &sum), &last);
+	if (s->kind == SEQUENCE_SOLUTION)
+		all = size_of_solution(r, sequence);
 	if (s->kind == SEQUENCE_CHOICE) {
 		tape_ref a = recurrence_full_size(r, s->a), b = recurrence_full_size(r, s->b);
 		all = tape_select(t, condition(r, s), a, b);
