@@ -76,7 +76,6 @@ static const real bent_stiffness[1][1] = {{0}};
 
 #define PL(name) bent_##name
 #define PL_TYPE bent
-#define PL_SINGLE IN_FLOAT
 #define PL_H bent_H
 #define PL_MODES 1
 #define PL_WIDTH 1

@@ -102,7 +102,7 @@ for kind in json csv; do
 done
 
 # is_needed NAME NEED: with this need the same choice is made as of one text, and the same C
-cp "$root"/models/*.spec . || exit 99
+cp "$root"/models/*.spec . && cp "$here"/*.spec . || exit 99
 is_needed() {
     { cat "$1.spec" && echo "need $2"; } >needed.spec
     { cat "$here/$1_flat.spec" && echo "need $2" | sed 's/\./_/g'; } >needed_flat.spec

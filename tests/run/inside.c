@@ -19,7 +19,7 @@ static void print_row(char name, const double *value, int count)
 static struct counted difference(struct counted now, struct counted before)
 {
     return (struct counted){now.multiplications - before.multiplications, now.additions - before.additions,
-                            now.calls - before.calls, now.forcings - before.forcings};
+                            now.calls - before.calls, now.forcings - before.forcings, 0, 0, 0, 0};
 }
 
 static void print_counts_of(const struct program *program, const struct counted *took)

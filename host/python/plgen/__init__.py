@@ -33,7 +33,8 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (8, 'the last terms of the step are above the tolerance'),
           (16, 'what is to stick and what is to slip at an event had no answer'),
           (32, 'a state has left the range that the spec gives it'),
-          (64, 'the step has ended beyond a stop'))
+          (64, 'the step has ended beyond a stop'),
+          (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
            32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
@@ -218,7 +219,7 @@ class Model(Linear):
     @property
     def status(self) -> int:
         """0, or the bits of NAME_status: 1 not finite, 2 too many events, 4 too many substeps, 8 inaccurate, 16
-        undecided, 32 a range left, 64 beyond a stop."""
+        undecided, 32 a range left, 64 beyond a stop, 128 a singular mass matrix."""
         status = self._code.model.status
         return status(self._state) if status else 0
 
