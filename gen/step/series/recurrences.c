@@ -2,36 +2,13 @@
 /* The coefficients of a series as nodes of a tape, each from those before it (Griewank and Walther, Evaluating
  * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
  * by its gains (implicit.c). */
-#include "inner.h"
+#include "recurrences.h"
 #include "step/exponential/recipe.h"
 #include "step/tapes.h"
 
 #include <math.h>
 
 enum { UNKNOWN = -2 };                  /* beside TAPE_NONE: nothing */
-
-struct recurrences {
-	const struct step *step;
-	const struct expansion *x;
-	struct series_names names;
-	struct tape *t;
-	struct lines *lines;        /* NULL: straight code */
-	tape_ref *made, *early, *update; /* [sequence][k], behind them that of the loop */
-	tape_ref *helper, *size;    /* per sequence: its inverse or half; of what its value is summed from */
-	tape_ref **gain;            /* [sequence][gain] */
-	struct solved *solved;      /* per system of linear equations */
-};
-
-struct solved {                     /* factors of the matrix at the start, which serve all k */
-	struct tape_factors *factors;
-	bool listed;                /* they are an array of the target, by lists */
-	tape_ref *x;                /* [k][component], likewise; UNKNOWN: not made yet */
-};
-
-static const struct sequence *sequence_of(const struct recurrences *r, int sequence)
-{
-	return &r->x->sequence[sequence];
-}
 
 struct tape *tape_of_recurrences(const struct recurrences *r)
 {
@@ -53,7 +30,7 @@ static const char *turn_text(int k)
 }
 
 /* The node under the sequence's name, with a number or a word behind it */
-static tape_ref named(struct recurrences *r, tape_ref ref, int sequence, const char *what)
+tape_ref recurrence_named(struct recurrences *r, tape_ref ref, int sequence, const char *what)
 {
 	if (r->names.name && ref != TAPE_NONE)
 		tape_name(r->t, ref, format("%s_%s", r->names.name(r->names.context, sequence), what));
@@ -86,20 +63,12 @@ static tape_ref staged(const struct recurrences *r, enum stage_kind kind, int a,
 	return tape_operand(r->t, TAPE_TABLE, stage_value(r->lines, value), STAGED);
 }
 
-/* A factor at k: a number, or one of a table times it */
-struct multiplier { double number; tape_ref table; };
-
-static struct multiplier plain(double number)
-{
-	return (struct multiplier){ number, TAPE_NONE };
-}
-
 static struct multiplier twice(struct multiplier f)
 {
 	return (struct multiplier){ 2 * f.number, f.table };
 }
 
-static tape_ref scaled(const struct recurrences *r, struct multiplier f, tape_ref ref)
+tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tape_ref ref)
 {
 	if (f.table == TAPE_NONE || ref == TAPE_NONE || f.number == 0)
 		return tape_scaled(r->t, f.number, ref);
@@ -107,7 +76,7 @@ static tape_ref scaled(const struct recurrences *r, struct multiplier f, tape_re
 }
 
 /* factor[k], of all k >= 1 the same or in a table */
-static struct multiplier factor_among(const struct recurrences *r, const double *factor, int k)
+struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k)
 {
 	const int order = r->x->order;
 	bool same = true;
@@ -121,48 +90,15 @@ static struct multiplier factor_among(const struct recurrences *r, const double 
 	return (struct multiplier){ 1, staged(r, STAGE_FACTOR, table, NONE, k, 0) };
 }
 
-static struct multiplier factor_at(const struct recurrences *r, const struct sequence_term *term, int k)
+struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k)
 {
-	return term->factor ? factor_among(r, term->factor, k) : plain(1);
+	return term->factor ? recurrence_factor_among(r, term->factor, k) : plain(1);
 }
 
 /* ---- sums ---- */
 
-struct addend { tape_ref first, then; };       /* then TAPE_NONE, or added behind it */
-struct list {
-	int terms;
-	struct addend *term;
-};
-
-static void add_two(struct list *list, tape_ref first, tape_ref then)
-{
-	if (first == TAPE_NONE)
-		return;
-	*MORE(list->term, list->terms) = (struct addend){ first, then };
-}
-
-static void add(struct list *list, tape_ref ref)
-{
-	add_two(list, ref, TAPE_NONE);
-}
-
-static tape_ref plus(struct tape *t, tape_ref sum, tape_ref term)
-{
-	return sum == TAPE_NONE ? term : term == TAPE_NONE ? sum : tape_binary(t, TAPE_ADD, sum, term);
-}
-
-static tape_ref less(struct tape *t, tape_ref a, tape_ref b)
-{
-	return b == TAPE_NONE ? a : plus(t, a, tape_unary(t, TAPE_NEG, b));
-}
-
-static tape_ref times(struct tape *t, tape_ref a, tape_ref b)
-{
-	return a == TAPE_NONE || b == TAPE_NONE ? TAPE_NONE : tape_binary(t, TAPE_MUL, a, b);
-}
-
 /* Oldest first, the newest added last, in two chains where it is long; of nothing TAPE_NONE */
-static tape_ref chain(struct tape *t, const struct list *list)
+tape_ref recurrence_chain(struct tape *t, const struct list *list)
 {
 	tape_ref sum[2] = { TAPE_NONE, TAPE_NONE };
 	int chains = list->terms > 4 ? 2 : 1;
@@ -183,7 +119,9 @@ static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 /* What is new of one sequence, times the first of another with its factor */
 static tape_ref newest(struct recurrences *r, tape_ref latest, struct multiplier factor, int other)
 {
-	return latest == TAPE_NONE ? latest : times(r->t, latest, scaled(r, factor, recurrence(r, other, 0)));
+	if (latest == TAPE_NONE)
+		return latest;
+	return times(r->t, latest, recurrence_scaled(r, factor, recurrence(r, other, 0)));
 }
 
 /* Has it coefficients of the orders that the loop makes? */
@@ -211,7 +149,7 @@ static void add_old(struct recurrences *r, struct list *sum, int a, int b, int k
 	struct list old = { 0 };
 	const bool square = a == b;
 	if (in_loop(k)) {
-		add(sum, scaled(r, factor, summed(r, square ? STAGE_SQUARE : STAGE_INNER, a, b, k, 0)));
+		add(sum, recurrence_scaled(r, factor, summed(r, square ? STAGE_SQUARE : STAGE_INNER, a, b, k, 0)));
 		return;
 	}
 	for (int gap = k % 2 ? 1 : 0; gap <= k - 2; gap += 2) {        /* those in the middle are the oldest */
@@ -222,11 +160,11 @@ static void add_old(struct recurrences *r, struct list *sum, int a, int b, int k
 			add(&old, pair(r, a, j, b, i));
 	}
 	tape_ref middle = square && k % 2 == 0 ? pair(r, a, k / 2, a, k / 2) : TAPE_NONE;
-	tape_ref rest = tape_scaled(t, square ? 2 : 1, chain(t, &old));
+	tape_ref rest = tape_scaled(t, square ? 2 : 1, recurrence_chain(t, &old));
 	if (factor.number == 1 && middle != TAPE_NONE)
 		add_two(sum, middle, rest);
 	else
-		add(sum, scaled(r, factor, plus(t, middle, rest)));
+		add(sum, recurrence_scaled(r, factor, plus(t, middle, rest)));
 }
 
 static tape_ref column_ref(const struct recurrences *r, int column)
@@ -238,7 +176,7 @@ static tape_ref column_ref(const struct recurrences *r, int column)
 static bool add_known(struct recurrences *r, struct list *sum, const struct sequence_term *term, int k)
 {
 	struct tape *t = r->t;
-	struct multiplier factor = factor_at(r, term, k);
+	struct multiplier factor = recurrence_factor_at(r, term, k);
 	if (term->kind == TERM_SEQUENCE || term->kind == TERM_PRODUCT)
 		return factor.number == 0;
 	if (term->slot >= 0) {
@@ -253,26 +191,23 @@ static bool add_known(struct recurrences *r, struct list *sum, const struct sequ
 			     : term->kind == TERM_LOAD  ? column_ref(r, term->a)
 							: tape_operand(t, TAPE_INPUT, term->a, slope);
 		tape_ref alone = factor.table == TAPE_NONE ? tape_double(t, factor.number) : factor.table;
-		add(sum, x == TAPE_NONE ? alone : scaled(r, factor, x));
+		add(sum, x == TAPE_NONE ? alone : recurrence_scaled(r, factor, x));
 	}
 	return true;
 }
 
-/* Of another sequence the k-th, or its early part */
-typedef tape_ref part_of(struct recurrences *r, int sequence, int k);
-
 /* What a term has at k, of parts of what it is made of: what is newest into `last` */
-static void add_term(struct recurrences *r, struct list *sum, struct list *last, const struct sequence_term *term,
+void recurrence_add_term(struct recurrences *r, struct list *sum, struct list *last, const struct sequence_term *term,
 		     int k, part_of *part)
 {
-	struct multiplier factor = factor_at(r, term, k);
+	struct multiplier factor = recurrence_factor_at(r, term, k);
 	const bool square = term->a == term->b;
 	if (add_known(r, sum, term, k))
 		return;
 	if (term->kind == TERM_SEQUENCE) {
-		add(last, scaled(r, factor, part(r, term->a, k)));
+		add(last, recurrence_scaled(r, factor, part(r, term->a, k)));
 	} else if (k == 0) {
-		add(sum, scaled(r, factor, pair(r, term->a, 0, term->b, 0)));
+		add(sum, recurrence_scaled(r, factor, pair(r, term->a, 0, term->b, 0)));
 	} else {
 		add_old(r, sum, term->a, term->b, k, factor);
 		add(last, newest(r, part(r, term->a, k), square ? twice(factor) : factor, term->b));
@@ -284,7 +219,7 @@ static void add_term(struct recurrences *r, struct list *sum, struct list *last,
 /* ---- choices ---- */
 
 /* By interval[], or by the numbers themselves */
-static tape_ref condition(struct recurrences *r, const struct sequence *s)
+tape_ref recurrence_condition(struct recurrences *r, const struct sequence *s)
 {
 	struct tape *t = r->t;
 	if (s->choice == CHOICE_BY_TIME) {
@@ -309,110 +244,13 @@ static tape_ref choice(struct recurrences *r, const struct sequence *s, int k, p
 	tape_ref a = part(r, s->a, k), b = part(r, s->b, k), zero = tape_number(t, 0);
 	if (a == TAPE_NONE && b == TAPE_NONE)
 		return TAPE_NONE;
-	return tape_select(t, condition(r, s), a == TAPE_NONE ? zero : a, b == TAPE_NONE ? zero : b);
-}
-
-/* ---- sizes of what a value is summed from ---- */
-
-static tape_ref add_sizes(struct recurrences *r, tape_ref all, const struct list *list)
-{
-	for (int i = 0; i < list->terms; i++)
-		all = plus(r->t, all, tape_unary(r->t, TAPE_SIZE, list->term[i].first));
-	return all;
-}
-
-static tape_ref size_of_value(struct recurrences *r, int sequence)
-{
-	return tape_unary(r->t, TAPE_SIZE, recurrence(r, sequence, 0));
-}
-
-tape_ref recurrence_size(struct recurrences *r, int sequence)
-{
-	const struct sequence *s = sequence_of(r, sequence);
-	struct list sum = { 0 }, last = { 0 };
-	for (int i = 0; i < s->terms && s->kind == SEQUENCE_SUM; i++)
-		add_term(r, &sum, &last, &s->term[i], 0, recurrence);
-	tape_ref all = add_sizes(r, add_sizes(r, TAPE_NONE, &sum), &last);
-	return all == TAPE_NONE ? size_of_value(r, sequence) : all;
-}
-
-static bool has_parts(const struct recurrences *r, int sequence)
-{
-	const struct sequence *s = sequence_of(r, sequence);
-	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || s->kind == SEQUENCE_SOLUTION ||
-				    (s->kind == SEQUENCE_SUM && s->terms > 0));
-}
-
-static tape_ref times_size(struct recurrences *r, tape_ref size, int sequence)
-{
-	return times(r->t, size, size_of_value(r, sequence));
-}
-
-/* By its own row: what M_jj x_j is the sum of, over M_jj. Where that is 0 or chosen it is a force. */
-static tape_ref size_of_solution(struct recurrences *r, int sequence)
-{
-	const struct linear_equations *e = sequence_of(r, sequence)->equations;
-	const int j = sequence_of(r, sequence)->component, *row = e->matrix + j * e->n;
-	tape_ref all = e->right[j] == NONE ? TAPE_NONE : recurrence_full_size(r, e->right[j]);
-	if (row[j] == NONE || sequence_of(r, row[j])->kind == SEQUENCE_CHOICE)
-		return size_of_value(r, sequence);
-	for (int k = 0; k < e->n; k++)
-		if (k != j && row[k] != NONE)
-			all = plus(r->t, all, times_size(r, size_of_value(r, e->first + k), row[k]));
-	return all == TAPE_NONE ? size_of_value(r, sequence)
-				: tape_binary(r->t, TAPE_DIV, all, size_of_value(r, row[j]));
-}
-
-static bool is_solved(const struct recurrences *r, int sequence)
-{
-	return sequence_of(r, sequence)->solved || sequence_of(r, sequence)->kind == SEQUENCE_SOLUTION;
-}
-
-/* A product with what a solution stands in; TAPE_NONE: it is none */
-static tape_ref size_of_product(struct recurrences *r, const struct sequence_term *term)
-{
-	if (term->kind != TERM_PRODUCT || (!is_solved(r, term->a) && !is_solved(r, term->b)))
-		return TAPE_NONE;
-	const bool first = is_solved(r, term->a);
-	tape_ref size = recurrence_full_size(r, first ? term->a : term->b);
-	return times(r->t, tape_double(r->t, fabs(term->factor[0])), times_size(r, size, first ? term->b : term->a));
-}
-
-tape_ref recurrence_full_size(struct recurrences *r, int sequence)
-{
-	struct tape *t = r->t;
-	const struct sequence *s = sequence_of(r, sequence);
-	if (!has_parts(r, sequence))
-		return size_of_value(r, sequence);
-	if (r->size[sequence] != TAPE_NONE)
-		return r->size[sequence];
-	struct list sum = { 0 }, last = { 0 };
-	tape_ref all = TAPE_NONE;
-	for (int i = 0; i < s->terms; i++) {
-		const struct sequence_term *term = &s->term[i];
-		if (term->kind == TERM_SEQUENCE && has_parts(r, term->a))
-			all = plus(t, all, times(t, tape_double(t, fabs(term->factor[0])),
-						 recurrence_full_size(r, term->a)));
-		else if (size_of_product(r, term) != TAPE_NONE)
-			all = plus(t, all, size_of_product(r, term));
-		else
-			add_term(r, &sum, &last, term, 0, recurrence);
-	}
-	all = add_sizes(r, add_sizes(r, all, &sum), &last);
-	if (s->kind == SEQUENCE_SOLUTION)
-		all = size_of_solution(r, sequence);
-	if (s->kind == SEQUENCE_CHOICE) {
-		tape_ref a = recurrence_full_size(r, s->a), b = recurrence_full_size(r, s->b);
-		all = tape_select(t, condition(r, s), a, b);
-	}
-	all = all == TAPE_NONE ? tape_number(t, 0) : all;
-	return r->size[sequence] = named(r, all, sequence, "size");
+	return tape_select(t, recurrence_condition(r, s), a == TAPE_NONE ? zero : a, b == TAPE_NONE ? zero : b);
 }
 
 /* ---- of each kind, k >= 1; of a sum k >= 0 ---- */
 
 /* 1/b_0 of a quotient by b, 1/a_0 of a power of a, 1/(2 c_0) of a root c */
-static tape_ref helper(struct recurrences *r, int sequence)
+tape_ref recurrence_helper(struct recurrences *r, int sequence)
 {
 	const struct sequence *s = sequence_of(r, sequence);
 	bool root = s->kind == SEQUENCE_ROOT;
@@ -420,13 +258,13 @@ static tape_ref helper(struct recurrences *r, int sequence)
 		return r->helper[sequence];
 	int below = root ? sequence : s->kind == SEQUENCE_POWER ? s->a : s->b;
 	tape_ref ref = tape_binary(r->t, TAPE_DIV, tape_double(r->t, root ? 0.5 : 1), recurrence(r, below, 0));
-	return r->helper[sequence] = named(r, ref, sequence, root ? "half" : "inverse");
+	return r->helper[sequence] = recurrence_named(r, ref, sequence, root ? "half" : "inverse");
 }
 
 /* over b_0, a_0 or 2 c_0 */
 static tape_ref over(struct recurrences *r, int sequence, tape_ref above)
 {
-	return above == TAPE_NONE ? above : times(r->t, above, helper(r, sequence));
+	return above == TAPE_NONE ? above : times(r->t, above, recurrence_helper(r, sequence));
 }
 
 /* (a_k - c_0 b_k - sum over 0 < j < k of c_j b_{k-j}) / b_0 */
@@ -439,7 +277,7 @@ static tape_ref quotient(struct recurrences *r, int sequence, const struct seque
 		add(&sum, summed(r, STAGE_QUOTIENT, sequence, s->b, k, 0));
 	for (int j = 1; j < k && !in_loop(k); j++)
 		add(&sum, pair(r, sequence, j, s->b, k - j));
-	return over(r, sequence, less(r->t, above, chain(r->t, &sum)));
+	return over(r, sequence, less(r->t, above, recurrence_chain(r->t, &sum)));
 }
 
 /* (a_k - sum over 0 < j < k of c_j c_{k-j}) / (2 c_0) */
@@ -447,11 +285,11 @@ static tape_ref root(struct recurrences *r, int sequence, const struct sequence 
 {
 	struct list old = { 0 };
 	add_old(r, &old, sequence, sequence, k, plain(1));
-	return over(r, sequence, less(r->t, part(r, s->a, k), chain(r->t, &old)));
+	return over(r, sequence, less(r->t, part(r, s->a, k), recurrence_chain(r->t, &old)));
 }
 
 /* In the target's type */
-static double rounded_double(double value)
+double recurrence_rounded(double value)
 {
 	RATIONAL exact = ZERO;
 	mpq_set_d(exact, value);
@@ -464,18 +302,18 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 {
 	struct list sum = { 0 };
 	tape_ref newest = times(r->t, part(r, s->a, k), recurrence(r, sequence, 0));
-	add(&sum, tape_scaled(r->t, rounded_double(s->exponent), newest));
+	add(&sum, tape_scaled(r->t, recurrence_rounded(s->exponent), newest));
 	if (in_loop(k))
-		add(&sum, summed(r, STAGE_POWER, s->a, sequence, k, rounded_double(s->exponent)));
+		add(&sum, summed(r, STAGE_POWER, s->a, sequence, k, recurrence_rounded(s->exponent)));
 	for (int j = 1; j < k && !in_loop(k); j++) {
-		double factor = rounded_double((s->exponent * (k - j) - j) / k);
+		double factor = recurrence_rounded((s->exponent * (k - j) - j) / k);
 		add(&sum, factor == 0 ? TAPE_NONE : tape_scaled(r->t, factor, pair(r, s->a, k - j, sequence, j)));
 	}
-	return over(r, sequence, chain(r->t, &sum));
+	return over(r, sequence, recurrence_chain(r->t, &sum));
 }
 
 /* The k-th, or its early part: old terms of products, and early parts of what it is made of */
-static tape_ref made_of(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
+tape_ref recurrence_made_of(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct list sum = { 0 }, last = { 0 };
 	switch (s->kind) {
@@ -485,15 +323,15 @@ static tape_ref made_of(struct recurrences *r, int sequence, const struct sequen
 	default:                break;
 	}
 	for (int i = 0; i < s->terms; i++)
-		add_term(r, &sum, part == recurrence ? &last : &sum, &s->term[i], k, part);
-	tape_ref all = chain(r->t, &sum);
+		recurrence_add_term(r, &sum, part == recurrence ? &last : &sum, &s->term[i], k, part);
+	tape_ref all = recurrence_chain(r->t, &sum);
 	for (int i = 0; i < last.terms; i++)
 		all = plus(r->t, all, last.term[i].first);
 	return all;
 }
 
 /* The part of the k-th that the newest of other sequences are not in; TAPE_NONE: there is none */
-static tape_ref early(struct recurrences *r, int sequence, int k)
+tape_ref recurrence_early(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
 	tape_ref *ref = place(r, r->early, sequence, k);
@@ -503,7 +341,8 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 		return TAPE_NONE;
 	check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = named(r, made_of(r, sequence, s, k, early), sequence, format("early_%s", turn_text(k)));
+		*ref = recurrence_named(r, recurrence_made_of(r, sequence, s, k, recurrence_early), sequence,
+					format("early_%s", turn_text(k)));
 	return *ref;
 }
 
@@ -521,7 +360,7 @@ static tape_ref provisional(struct recurrences *r, int sequence, int k)
 	check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
-						  : made_of(r, sequence, s, k, provisional);
+						  : recurrence_made_of(r, sequence, s, k, provisional);
 	return *ref;
 }
 
@@ -539,15 +378,15 @@ static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, i
 	struct list sum = { 0 };
 	for (int i = 0; i < s->terms; i++) {
 		const struct sequence_term *term = &s->term[i];
-		struct multiplier factor = factor_at(r, term, k);
+		struct multiplier factor = recurrence_factor_at(r, term, k);
 		if (term->kind == TERM_SEQUENCE)
-			add(&sum, scaled(r, factor, update(r, term->a, k)));
+			add(&sum, recurrence_scaled(r, factor, update(r, term->a, k)));
 		if (term->kind != TERM_PRODUCT)
 			continue;
 		add(&sum, update_times(r, term->a, k, factor, term->b));
 		add(&sum, update_times(r, term->b, k, factor, term->a));
 	}
-	return chain(r->t, &sum);
+	return recurrence_chain(r->t, &sum);
 }
 
 static tape_ref update(struct recurrences *r, int sequence, int k)
@@ -621,136 +460,6 @@ static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
 	return x[s->component];
 }
 
-/* ---- gains: derivatives of the k-th by the k-th of another, k >= 1: a number, or what follows from the first
- * coefficients. Of an integral, times k + 1 ---- */
-
-static int place_of_gain(const struct sequence *s, int other)
-{
-	int place = 0;
-	while (place < s->gains && s->gain[place] != other)
-		place++;
-	return place < s->gains ? place : NONE;
-}
-
-static tape_ref gain_ref(struct recurrences *r, int sequence, int other);
-
-static tape_ref own_gain(struct recurrences *r, int sequence, int place)
-{
-	tape_ref *made = &r->gain[sequence][place];
-	int other = sequence_of(r, sequence)->gain[place];
-	if (*made == TAPE_NONE) {
-		*made = gain_ref(r, sequence, other);
-		if (r->names.name)
-			named(r, *made, sequence, format("by_%s", r->names.name(r->names.context, other)));
-	}
-	return *made;
-}
-
-/* In what reads it; TAPE_NONE: it is 0 */
-static tape_ref gain(struct recurrences *r, int sequence, int other)
-{
-	const struct sequence *s = sequence_of(r, sequence);
-	if (!s->split)
-		return sequence == other ? tape_number(r->t, 1) : TAPE_NONE;
-	int place = place_of_gain(s, other);
-	return place == NONE ? TAPE_NONE : own_gain(r, sequence, place);
-}
-
-/* times the first of a sequence */
-static tape_ref gain_times(struct recurrences *r, tape_ref gain, double factor, int sequence)
-{
-	return tape_scaled(r->t, factor, times(r->t, recurrence(r, sequence, 0), gain));
-}
-
-/* Of a sum */
-static tape_ref gain_of_sum(struct recurrences *r, const struct sequence *s, int other)
-{
-	struct list sum = { 0 };
-	for (int i = 0; i < s->terms; i++) {
-		const struct sequence_term *term = &s->term[i];
-		const bool square = term->a == term->b;
-		if (term->kind == TERM_SEQUENCE)
-			add(&sum, tape_scaled(r->t, term->factor[0], gain(r, term->a, other)));
-		if (term->kind != TERM_PRODUCT)
-			continue;
-		add(&sum, gain_times(r, gain(r, term->a, other), (square ? 2 : 1) * term->factor[0], term->b));
-		if (!square)
-			add(&sum, gain_times(r, gain(r, term->b, other), term->factor[0], term->a));
-	}
-	return sum.terms ? chain(r->t, &sum) : tape_number(r->t, 0);
-}
-
-static tape_ref gain_ref(struct recurrences *r, int sequence, int other)
-{
-	struct tape *t = r->t;
-	const struct sequence *s = sequence_of(r, sequence);
-	if (s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL)
-		return gain_of_sum(r, s, other);
-	tape_ref a = s->a == NONE ? TAPE_NONE : gain(r, s->a, other);
-	if (s->kind == SEQUENCE_POWER)
-		a = times(t, a, recurrence(r, sequence, 0));
-	if (s->kind == SEQUENCE_QUOTIENT)
-		a = less(t, a, gain_times(r, gain(r, s->b, other), 1, sequence));
-	a = times(t, a, helper(r, sequence));
-	return s->kind == SEQUENCE_POWER ? tape_scaled(t, rounded_double(s->exponent), a) : a;
-}
-
-/* Some of the newest of a term is that of another */
-static bool reads(const struct recurrences *r, const struct sequence_term *term, int other)
-{
-	bool product = term->kind == TERM_PRODUCT, found = false;
-	for (int i = 0; i < (product ? 2 : term->kind == TERM_SEQUENCE); i++) {
-		int operand = i ? term->b : term->a;
-		const struct sequence *s = sequence_of(r, operand);
-		found = found || (s->split ? place_of_gain(s, other) != NONE : operand == other);
-	}
-	return found;
-}
-
-/* The only term with this other is itself, with a number: its factor at each k */
-static const struct sequence_term *plain_term(const struct recurrences *r, const struct sequence *s, int other)
-{
-	const struct sequence_term *only = NULL;
-	if (s->kind != SEQUENCE_SUM && s->kind != SEQUENCE_INTEGRAL)
-		return NULL;
-	for (int i = 0; i < s->terms; i++) {
-		const struct sequence_term *term = &s->term[i];
-		bool itself = term->kind == TERM_SEQUENCE && term->a == other && !sequence_of(r, other)->split;
-		if (!reads(r, term, other))
-			continue;
-		if (!itself || only)
-			return NULL;
-		only = term;
-	}
-	return only;
-}
-
-/* 1/(k + 1) */
-static struct multiplier part_at(struct recurrences *r, int k)
-{
-	SCRATCH double *part = ARRAY(double, r->x->order + 1);
-	for (int i = 0; i <= r->x->order; i++)
-		part[i] = rounded_double(1.0 / (i + 1));
-	return factor_among(r, part, k);
-}
-
-/* early part + sum of gains times the k-th of the others, over k + 1 of an integral */
-static tape_ref joined(struct recurrences *r, int sequence, const struct sequence *s, int k)
-{
-	struct tape *t = r->t;
-	tape_ref all = s->split ? early(r, sequence, k) : made_of(r, sequence, s, k, early);
-	for (int i = 0; i < s->gains; i++) {
-		const struct sequence_term *only = plain_term(r, s, s->gain[i]);
-		tape_ref latest = recurrence(r, s->gain[i], k);
-		if (latest == TAPE_NONE)
-			continue;
-		struct multiplier factor = s->kind == SEQUENCE_INTEGRAL ? part_at(r, k) : plain(1);
-		all = plus(t, all, only ? scaled(r, factor_at(r, only, k), latest)
-					: times(t, latest, scaled(r, factor, own_gain(r, sequence, i))));
-	}
-	return all;
-}
-
 /* ---- coefficients ---- */
 
 /* At k = 0 */
@@ -784,7 +493,7 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 {
 	const bool integral = s->kind == SEQUENCE_INTEGRAL;
 	if (s->kind == SEQUENCE_RATE)
-		return scaled(r, number_at(r, k + 1), recurrence(r, s->a, k + 1));
+		return recurrence_scaled(r, number_at(r, k + 1), recurrence(r, s->a, k + 1));
 	if (s->kind == SEQUENCE_CHOICE && !(s->solved && k > 0))
 		return choice(r, s, k, recurrence);
 	if (s->kind == SEQUENCE_SOLUTION)
@@ -795,8 +504,8 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 		return TAPE_NONE;
 	if (s->solved && k > 0)
 		return plus(r->t, provisional(r, sequence, k), update(r, sequence, k));
-	return s->gains && k > integral ? joined(r, sequence, s, k - integral)
-					: made_of(r, sequence, s, k - integral, recurrence);
+	return s->gains && k > integral ? recurrence_joined(r, sequence, s, k - integral)
+					: recurrence_made_of(r, sequence, s, k - integral, recurrence);
 }
 
 tape_ref recurrence(struct recurrences *r, int sequence, int k)
@@ -808,7 +517,7 @@ tape_ref recurrence(struct recurrences *r, int sequence, int k)
 	if (in_loop(k) && k - STAGE < r->lines->offset[sequence])
 		return staged(r, STAGE_COEFFICIENT, sequence, NONE, k, 0);
 	if (*ref == UNKNOWN)
-		*ref = named(r, made(r, sequence, s, k), sequence, turn_text(k));
+		*ref = recurrence_named(r, made(r, sequence, s, k), sequence, turn_text(k));
 	if (*ref == TAPE_NONE && k == 0)
 		*ref = tape_number(r->t, 0);
 	return *ref;

@@ -1,0 +1,100 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Sizes of what a value of a series is summed from: what rounding may be measured by. */
+#include "recurrences.h"
+
+#include <math.h>
+
+static tape_ref add_sizes(struct recurrences *r, tape_ref all, const struct list *list)
+{
+	for (int i = 0; i < list->terms; i++)
+		all = plus(r->t, all, tape_unary(r->t, TAPE_SIZE, list->term[i].first));
+	return all;
+}
+
+static tape_ref size_of_value(struct recurrences *r, int sequence)
+{
+	return tape_unary(r->t, TAPE_SIZE, recurrence(r, sequence, 0));
+}
+
+tape_ref recurrence_size(struct recurrences *r, int sequence)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	struct list sum = { 0 }, last = { 0 };
+	for (int i = 0; i < s->terms && s->kind == SEQUENCE_SUM; i++)
+		recurrence_add_term(r, &sum, &last, &s->term[i], 0, recurrence);
+	tape_ref all = add_sizes(r, add_sizes(r, TAPE_NONE, &sum), &last);
+	return all == TAPE_NONE ? size_of_value(r, sequence) : all;
+}
+
+static bool has_parts(const struct recurrences *r, int sequence)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	return s->state == NONE && (s->kind == SEQUENCE_CHOICE || s->kind == SEQUENCE_SOLUTION ||
+				    (s->kind == SEQUENCE_SUM && s->terms > 0));
+}
+
+static tape_ref times_size(struct recurrences *r, tape_ref size, int sequence)
+{
+	return times(r->t, size, size_of_value(r, sequence));
+}
+
+/* By its own row: what M_jj x_j is the sum of, over M_jj. Where that is 0 or chosen it is a force. */
+static tape_ref size_of_solution(struct recurrences *r, int sequence)
+{
+	const struct linear_equations *e = sequence_of(r, sequence)->equations;
+	const int j = sequence_of(r, sequence)->component, *row = e->matrix + j * e->n;
+	tape_ref all = e->right[j] == NONE ? TAPE_NONE : recurrence_full_size(r, e->right[j]);
+	if (row[j] == NONE || sequence_of(r, row[j])->kind == SEQUENCE_CHOICE)
+		return size_of_value(r, sequence);
+	for (int k = 0; k < e->n; k++)
+		if (k != j && row[k] != NONE)
+			all = plus(r->t, all, times_size(r, size_of_value(r, e->first + k), row[k]));
+	return all == TAPE_NONE ? size_of_value(r, sequence)
+				: tape_binary(r->t, TAPE_DIV, all, size_of_value(r, row[j]));
+}
+
+static bool is_solved(const struct recurrences *r, int sequence)
+{
+	return sequence_of(r, sequence)->solved || sequence_of(r, sequence)->kind == SEQUENCE_SOLUTION;
+}
+
+/* A product with what a solution stands in; TAPE_NONE: it is none */
+static tape_ref size_of_product(struct recurrences *r, const struct sequence_term *term)
+{
+	if (term->kind != TERM_PRODUCT || (!is_solved(r, term->a) && !is_solved(r, term->b)))
+		return TAPE_NONE;
+	const bool first = is_solved(r, term->a);
+	tape_ref size = recurrence_full_size(r, first ? term->a : term->b);
+	return times(r->t, tape_double(r->t, fabs(term->factor[0])), times_size(r, size, first ? term->b : term->a));
+}
+
+tape_ref recurrence_full_size(struct recurrences *r, int sequence)
+{
+	struct tape *t = r->t;
+	const struct sequence *s = sequence_of(r, sequence);
+	if (!has_parts(r, sequence))
+		return size_of_value(r, sequence);
+	if (r->size[sequence] != TAPE_NONE)
+		return r->size[sequence];
+	struct list sum = { 0 }, last = { 0 };
+	tape_ref all = TAPE_NONE;
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *term = &s->term[i];
+		if (term->kind == TERM_SEQUENCE && has_parts(r, term->a))
+			all = plus(t, all, times(t, tape_double(t, fabs(term->factor[0])),
+						 recurrence_full_size(r, term->a)));
+		else if (size_of_product(r, term) != TAPE_NONE)
+			all = plus(t, all, size_of_product(r, term));
+		else
+			recurrence_add_term(r, &sum, &last, term, 0, recurrence);
+	}
+	all = add_sizes(r, add_sizes(r, all, &sum), &last);
+	if (s->kind == SEQUENCE_SOLUTION)
+		all = size_of_solution(r, sequence);
+	if (s->kind == SEQUENCE_CHOICE) {
+		tape_ref a = recurrence_full_size(r, s->a), b = recurrence_full_size(r, s->b);
+		all = tape_select(t, recurrence_condition(r, s), a, b);
+	}
+	all = all == TAPE_NONE ? tape_number(t, 0) : all;
+	return r->size[sequence] = recurrence_named(r, all, sequence, "size");
+}
