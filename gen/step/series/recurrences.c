@@ -15,99 +15,7 @@ struct tape *tape_of_recurrences(const struct recurrences *r)
 	return r->t;
 }
 
-static bool in_loop(int k)
-{
-	return k > STAGE / 2;
-}
-
-/* ---- names ---- */
-
-/* Of the loop x_by_1k: no coordinate is called so, since no name begins with a digit */
-static const char *turn_text(int k)
-{
-	const int offset = k - STAGE;
-	return !in_loop(k) ? format("%d", k) : format("by_%dk", offset < 0 ? 10 - offset : offset);
-}
-
-/* The node under the sequence's name, with a number or a word behind it */
-tape_ref recurrence_named(struct recurrences *r, tape_ref ref, int sequence, const char *what)
-{
-	if (r->names.name && ref != TAPE_NONE)
-		tape_name(r->t, ref, format("%s_%s", r->names.name(r->names.context, sequence), what));
-	return ref;
-}
-
-/* ---- in a loop over k ---- */
-
-/* Parts of a coefficient are made with it. */
-static void check_turn(const struct recurrences *r, int sequence, int k)
-{
-	if (in_loop(k) && k - STAGE != r->lines->offset[sequence])
-		internal_error(r->step, "a part of a coefficient is wanted in another turn of the loop");
-}
-
-static int column_of(const struct recurrences *r, int k)
-{
-	return !in_loop(k) ? k : r->x->order + 1;
-}
-
-static tape_ref *place(const struct recurrences *r, tape_ref *list, int sequence, int k)
-{
-	return &list[sequence * (r->x->order + 2) + column_of(r, k)];
-}
-
-/* What depends on the k of the loop and is no number of a node */
-static tape_ref staged(const struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent)
-{
-	const struct stage_value value = { kind, a, b, k - STAGE, exponent };
-	return tape_operand(r->t, TAPE_TABLE, stage_value(r->lines, value), STAGED);
-}
-
-static struct multiplier twice(struct multiplier f)
-{
-	return (struct multiplier){ 2 * f.number, f.table };
-}
-
-tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tape_ref ref)
-{
-	if (f.table == TAPE_NONE || ref == TAPE_NONE || f.number == 0)
-		return tape_scaled(r->t, f.number, ref);
-	return tape_scaled(r->t, f.number, tape_times_each(r->t, f.table, ref));
-}
-
-/* factor[k], of all k >= 1 the same or in a table */
-struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k)
-{
-	const int order = r->x->order;
-	bool same = true;
-	if (!in_loop(k))
-		return plain(factor[k]);
-	for (int i = 2; i <= order; i++)
-		same = same && factor[i] == factor[1];
-	if (same)
-		return plain(factor[1]);
-	const int table = stage_factors(r->lines, factor, order + 1);
-	return (struct multiplier){ 1, staged(r, STAGE_FACTOR, table, NONE, k, 0) };
-}
-
-struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k)
-{
-	return term->factor ? recurrence_factor_among(r, term->factor, k) : plain(1);
-}
-
 /* ---- sums ---- */
-
-/* Oldest first, the newest added last, in two chains where it is long; of nothing TAPE_NONE */
-tape_ref recurrence_chain(struct tape *t, const struct list *list)
-{
-	tape_ref sum[2] = { TAPE_NONE, TAPE_NONE };
-	int chains = list->terms > 4 ? 2 : 1;
-	for (int i = 0; i < list->terms; i++) {
-		tape_ref *own = &sum[i % chains];
-		*own = plus(t, plus(t, *own, list->term[i].first), list->term[i].then);
-	}
-	return plus(t, sum[0], sum[1]);
-}
 
 /* a_i b_j */
 static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
@@ -135,10 +43,10 @@ static tape_ref summed(struct recurrences *r, enum stage_kind kind, int a, int b
 {
 	if (!goes_on(r, a) || !goes_on(r, b))
 		return TAPE_NONE;
-	tape_ref ref = staged(r, kind, a, b, k, exponent);
+	tape_ref ref = recurrence_staged(r, kind, a, b, k, exponent);
 	if (r->names.name)
 		tape_name(r->t, ref, format("%s_%s_old_%s", r->names.name(r->names.context, a),
-					    r->names.name(r->names.context, b), turn_text(k)));
+					    r->names.name(r->names.context, b), recurrence_turn_text(k)));
 	return ref;
 }
 
@@ -181,7 +89,7 @@ static bool add_known(struct recurrences *r, struct list *sum, const struct sequ
 		return factor.number == 0;
 	if (term->slot >= 0) {
 		tape_ref entry = !in_loop(k) ? tape_operand(t, TAPE_TABLE, term->slot, k)
-					   : staged(r, STAGE_FORCE, term->slot, NONE, k, 0);
+					   : recurrence_staged(r, STAGE_FORCE, term->slot, NONE, k, 0);
 		tape_ref column = column_ref(r, term->a);
 		add(sum, column == TAPE_NONE ? entry : times(t, entry, column));
 	} else if (factor.number != 0) {
@@ -250,7 +158,7 @@ static tape_ref choice(struct recurrences *r, const struct sequence *s, int k, p
 /* ---- of each kind, k >= 1; of a sum k >= 0 ---- */
 
 /* 1/b_0 of a quotient by b, 1/a_0 of a power of a, 1/(2 c_0) of a root c */
-tape_ref recurrence_helper(struct recurrences *r, int sequence)
+static tape_ref helper(struct recurrences *r, int sequence)
 {
 	const struct sequence *s = sequence_of(r, sequence);
 	bool root = s->kind == SEQUENCE_ROOT;
@@ -264,7 +172,7 @@ tape_ref recurrence_helper(struct recurrences *r, int sequence)
 /* over b_0, a_0 or 2 c_0 */
 static tape_ref over(struct recurrences *r, int sequence, tape_ref above)
 {
-	return above == TAPE_NONE ? above : times(r->t, above, recurrence_helper(r, sequence));
+	return above == TAPE_NONE ? above : times(r->t, above, helper(r, sequence));
 }
 
 /* (a_k - c_0 b_k - sum over 0 < j < k of c_j b_{k-j}) / b_0 */
@@ -288,15 +196,6 @@ static tape_ref root(struct recurrences *r, int sequence, const struct sequence 
 	return over(r, sequence, less(r->t, part(r, s->a, k), recurrence_chain(r->t, &old)));
 }
 
-/* In the target's type */
-double recurrence_rounded(double value)
-{
-	RATIONAL exact = ZERO;
-	mpq_set_d(exact, value);
-	value = round_rational(exact);
-	return value;
-}
-
 /* sum over j < k of (exponent (k-j) - j)/k a_{k-j} c_j, over a_0 */
 static tape_ref power(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
@@ -313,7 +212,7 @@ static tape_ref power(struct recurrences *r, int sequence, const struct sequence
 }
 
 /* The k-th, or its early part: old terms of products, and early parts of what it is made of */
-tape_ref recurrence_made_of(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
+static tape_ref made_of(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct list sum = { 0 }, last = { 0 };
 	switch (s->kind) {
@@ -331,18 +230,18 @@ tape_ref recurrence_made_of(struct recurrences *r, int sequence, const struct se
 }
 
 /* The part of the k-th that the newest of other sequences are not in; TAPE_NONE: there is none */
-tape_ref recurrence_early(struct recurrences *r, int sequence, int k)
+static tape_ref early(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = place(r, r->early, sequence, k);
+	tape_ref *ref = recurrence_place(r, r->early, sequence, k);
 	if (s->known)
 		return recurrence(r, sequence, k);
 	if (!s->split)
 		return TAPE_NONE;
-	check_turn(r, sequence, k);
+	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = recurrence_named(r, recurrence_made_of(r, sequence, s, k, recurrence_early), sequence,
-					format("early_%s", turn_text(k)));
+		*ref = recurrence_named(r, made_of(r, sequence, s, k, early), sequence,
+					format("early_%s", recurrence_turn_text(k)));
 	return *ref;
 }
 
@@ -352,15 +251,15 @@ tape_ref recurrence_early(struct recurrences *r, int sequence, int k)
 static tape_ref provisional(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = place(r, r->early, sequence, k);
+	tape_ref *ref = recurrence_place(r, r->early, sequence, k);
 	if (s->kind == SEQUENCE_SOLUTION)
 		return TAPE_NONE;
 	if (!s->solved)
 		return recurrence(r, sequence, k);
-	check_turn(r, sequence, k);
+	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
-						  : recurrence_made_of(r, sequence, s, k, provisional);
+						  : made_of(r, sequence, s, k, provisional);
 	return *ref;
 }
 
@@ -392,12 +291,12 @@ static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, i
 static tape_ref update(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = place(r, r->update, sequence, k);
+	tape_ref *ref = recurrence_place(r, r->update, sequence, k);
 	if (s->kind == SEQUENCE_SOLUTION)
 		return recurrence(r, sequence, k);
 	if (!s->solved)
 		return TAPE_NONE;
-	check_turn(r, sequence, k);
+	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_QUOTIENT ? over(r, sequence, update(r, s->a, k))
 		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
@@ -443,7 +342,7 @@ static void solve_by_lists(struct recurrences *r, const struct linear_equations 
 			 right[i] == TAPE_NONE ? tape_number(t, 0) : right[i], 10, NULL);
 	tape_statement(t, solver_text(r, e, false));
 	for (int i = 0; i < e->n; i++)
-		x[i] = staged(r, STAGE_SOLVED, e->number, i, k, 0);
+		x[i] = recurrence_staged(r, STAGE_SOLVED, e->number, i, k, 0);
 }
 
 static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
@@ -458,6 +357,137 @@ static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
 	else if (x[0] == UNKNOWN)
 		tape_solve(factors_of(r, e), right, x);
 	return x[s->component];
+}
+
+/* ---- gains: derivatives of the k-th by the k-th of another, k >= 1: a number, or what follows from the first
+ * coefficients. Of an integral, times k + 1 ---- */
+
+static int place_of_gain(const struct sequence *s, int other)
+{
+	int place = 0;
+	while (place < s->gains && s->gain[place] != other)
+		place++;
+	return place < s->gains ? place : NONE;
+}
+
+static tape_ref gain_ref(struct recurrences *r, int sequence, int other);
+
+static tape_ref own_gain(struct recurrences *r, int sequence, int place)
+{
+	tape_ref *made = &r->gain[sequence][place];
+	int other = sequence_of(r, sequence)->gain[place];
+	if (*made == TAPE_NONE) {
+		*made = gain_ref(r, sequence, other);
+		if (r->names.name)
+			recurrence_named(r, *made, sequence, format("by_%s", r->names.name(r->names.context, other)));
+	}
+	return *made;
+}
+
+/* In what reads it; TAPE_NONE: it is 0 */
+static tape_ref gain(struct recurrences *r, int sequence, int other)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	if (!s->split)
+		return sequence == other ? tape_number(r->t, 1) : TAPE_NONE;
+	int place = place_of_gain(s, other);
+	return place == NONE ? TAPE_NONE : own_gain(r, sequence, place);
+}
+
+/* times the first of a sequence */
+static tape_ref gain_times(struct recurrences *r, tape_ref gain, double factor, int sequence)
+{
+	return tape_scaled(r->t, factor, times(r->t, recurrence(r, sequence, 0), gain));
+}
+
+/* Of a sum */
+static tape_ref gain_of_sum(struct recurrences *r, const struct sequence *s, int other)
+{
+	struct list sum = { 0 };
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *term = &s->term[i];
+		const bool square = term->a == term->b;
+		if (term->kind == TERM_SEQUENCE)
+			add(&sum, tape_scaled(r->t, term->factor[0], gain(r, term->a, other)));
+		if (term->kind != TERM_PRODUCT)
+			continue;
+		add(&sum, gain_times(r, gain(r, term->a, other), (square ? 2 : 1) * term->factor[0], term->b));
+		if (!square)
+			add(&sum, gain_times(r, gain(r, term->b, other), term->factor[0], term->a));
+	}
+	return sum.terms ? recurrence_chain(r->t, &sum) : tape_number(r->t, 0);
+}
+
+static tape_ref gain_ref(struct recurrences *r, int sequence, int other)
+{
+	struct tape *t = r->t;
+	const struct sequence *s = sequence_of(r, sequence);
+	if (s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL)
+		return gain_of_sum(r, s, other);
+	tape_ref a = s->a == NONE ? TAPE_NONE : gain(r, s->a, other);
+	if (s->kind == SEQUENCE_POWER)
+		a = times(t, a, recurrence(r, sequence, 0));
+	if (s->kind == SEQUENCE_QUOTIENT)
+		a = less(t, a, gain_times(r, gain(r, s->b, other), 1, sequence));
+	a = times(t, a, helper(r, sequence));
+	return s->kind == SEQUENCE_POWER ? tape_scaled(t, recurrence_rounded(s->exponent), a) : a;
+}
+
+/* Some of the newest of a term is that of another */
+static bool reads(const struct recurrences *r, const struct sequence_term *term, int other)
+{
+	bool product = term->kind == TERM_PRODUCT, found = false;
+	for (int i = 0; i < (product ? 2 : term->kind == TERM_SEQUENCE); i++) {
+		int operand = i ? term->b : term->a;
+		const struct sequence *s = sequence_of(r, operand);
+		found = found || (s->split ? place_of_gain(s, other) != NONE : operand == other);
+	}
+	return found;
+}
+
+/* The only term with this other is itself, with a number: its factor at each k */
+static const struct sequence_term *plain_term(const struct recurrences *r, const struct sequence *s, int other)
+{
+	const struct sequence_term *only = NULL;
+	if (s->kind != SEQUENCE_SUM && s->kind != SEQUENCE_INTEGRAL)
+		return NULL;
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *term = &s->term[i];
+		bool itself = term->kind == TERM_SEQUENCE && term->a == other && !sequence_of(r, other)->split;
+		if (!reads(r, term, other))
+			continue;
+		if (!itself || only)
+			return NULL;
+		only = term;
+	}
+	return only;
+}
+
+/* 1/(k + 1) */
+static struct multiplier part_at(struct recurrences *r, int k)
+{
+	SCRATCH double *part = ARRAY(double, r->x->order + 1);
+	for (int i = 0; i <= r->x->order; i++)
+		part[i] = recurrence_rounded(1.0 / (i + 1));
+	return recurrence_factor_among(r, part, k);
+}
+
+/* early part + sum of gains times the k-th of the others, over k + 1 of an integral */
+static tape_ref joined(struct recurrences *r, int sequence, const struct sequence *s, int k)
+{
+	struct tape *t = r->t;
+	tape_ref all = s->split ? early(r, sequence, k)
+				: made_of(r, sequence, s, k, early);
+	for (int i = 0; i < s->gains; i++) {
+		const struct sequence_term *only = plain_term(r, s, s->gain[i]);
+		tape_ref latest = recurrence(r, s->gain[i], k);
+		if (latest == TAPE_NONE)
+			continue;
+		struct multiplier factor = s->kind == SEQUENCE_INTEGRAL ? part_at(r, k) : plain(1);
+		all = plus(t, all, only ? recurrence_scaled(r, recurrence_factor_at(r, only, k), latest)
+					: times(t, latest, recurrence_scaled(r, factor, own_gain(r, sequence, i))));
+	}
+	return all;
 }
 
 /* ---- coefficients ---- */
@@ -486,7 +516,7 @@ static bool is_constant_sequence(struct recurrences *r, int sequence)
 
 static struct multiplier number_at(const struct recurrences *r, int k)
 {
-	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
+	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, recurrence_staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
 }
 
 static tape_ref made(struct recurrences *r, int sequence, const struct sequence *s, int k)
@@ -504,20 +534,20 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 		return TAPE_NONE;
 	if (s->solved && k > 0)
 		return plus(r->t, provisional(r, sequence, k), update(r, sequence, k));
-	return s->gains && k > integral ? recurrence_joined(r, sequence, s, k - integral)
-					: recurrence_made_of(r, sequence, s, k - integral, recurrence);
+	return s->gains && k > integral ? joined(r, sequence, s, k - integral)
+					: made_of(r, sequence, s, k - integral, recurrence);
 }
 
 tape_ref recurrence(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
-	tape_ref *ref = place(r, r->made, sequence, k);
+	tape_ref *ref = recurrence_place(r, r->made, sequence, k);
 	if (in_loop(k) && !goes_on(r, sequence))
 		return TAPE_NONE;
 	if (in_loop(k) && k - STAGE < r->lines->offset[sequence])
-		return staged(r, STAGE_COEFFICIENT, sequence, NONE, k, 0);
+		return recurrence_staged(r, STAGE_COEFFICIENT, sequence, NONE, k, 0);
 	if (*ref == UNKNOWN)
-		*ref = recurrence_named(r, made(r, sequence, s, k), sequence, turn_text(k));
+		*ref = recurrence_named(r, made(r, sequence, s, k), sequence, recurrence_turn_text(k));
 	if (*ref == TAPE_NONE && k == 0)
 		*ref = tape_number(r->t, 0);
 	return *ref;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of recurrences have from one another: recurrences.c, sizes.c and gains.c. */
+/* What the files of recurrences have from one another: turns.c, recurrences.c and sizes.c. */
 #ifndef PLGEN_STEP_SERIES_RECURRENCES_H
 #define PLGEN_STEP_SERIES_RECURRENCES_H
 
@@ -28,12 +28,22 @@ static inline const struct sequence *sequence_of(const struct recurrences *r, in
 	return &r->x->sequence[sequence];
 }
 
+static inline bool in_loop(int k)
+{
+	return k > STAGE / 2;
+}
+
 /* A factor at k: a number, or one of a table times it */
 struct multiplier { double number; tape_ref table; };
 
 static inline struct multiplier plain(double number)
 {
 	return (struct multiplier){ number, TAPE_NONE };
+}
+
+static inline struct multiplier twice(struct multiplier f)
+{
+	return (struct multiplier){ 2 * f.number, f.table };
 }
 
 struct addend { tape_ref first, then; };       /* then TAPE_NONE, or added behind it */
@@ -72,23 +82,23 @@ static inline tape_ref times(struct tape *t, tape_ref a, tape_ref b)
 /* Of another sequence the k-th, or its early part */
 typedef tape_ref part_of(struct recurrences *r, int sequence, int k);
 
-/* ---- recurrences.c ---- */
+/* ---- turns.c: what depends on k alone ---- */
 
+const char *recurrence_turn_text(int k);
 tape_ref recurrence_named(struct recurrences *r, tape_ref ref, int sequence, const char *what);
+void recurrence_check_turn(const struct recurrences *r, int sequence, int k);
+tape_ref *recurrence_place(const struct recurrences *r, tape_ref *list, int sequence, int k);
+tape_ref recurrence_staged(const struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent);
 tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tape_ref ref);
 struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k);
 struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k);
 tape_ref recurrence_chain(struct tape *t, const struct list *list);
+double recurrence_rounded(double value);
+
+/* ---- recurrences.c ---- */
+
 void recurrence_add_term(struct recurrences *r, struct list *sum, struct list *last, const struct sequence_term *term,
-		     int k, part_of *part);
+			 int k, part_of *part);
 tape_ref recurrence_condition(struct recurrences *r, const struct sequence *s);
-tape_ref recurrence_helper(struct recurrences *r, int sequence);
-tape_ref recurrence_early(struct recurrences *r, int sequence, int k);
-tape_ref recurrence_made_of(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part);
-double recurrence_rounded(double value);      /* in the type of the target */
-
-/* ---- gains.c: the early part, and the newest of others by their gains ---- */
-
-tape_ref recurrence_joined(struct recurrences *r, int sequence, const struct sequence *s, int k);
 
 #endif
