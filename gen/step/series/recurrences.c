@@ -348,7 +348,7 @@ static void solve_by_lists(struct recurrences *r, const struct linear_equations 
 static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
 {
 	const struct linear_equations *e = s->equations;
-	tape_ref *x = &r->solved[e->number].x[column_of(r, k) * e->n];
+	tape_ref *x = &r->solved[e->number].x[recurrence_column(r, k) * e->n];
 	SCRATCH tape_ref *right = ARRAY(tape_ref, e->n);
 	for (int i = 0; i < e->n && x[0] == UNKNOWN; i++)
 		right[i] = k == 0 ? entry(r, e->right[i]) : less(r->t, TAPE_NONE, provisional(r, e->residual[i], k));

@@ -87,6 +87,7 @@ typedef tape_ref part_of(struct recurrences *r, int sequence, int k);
 const char *recurrence_turn_text(int k);
 tape_ref recurrence_named(struct recurrences *r, tape_ref ref, int sequence, const char *what);
 void recurrence_check_turn(const struct recurrences *r, int sequence, int k);
+int recurrence_column(const struct recurrences *r, int k);     /* of k in lists of coefficients */
 tape_ref *recurrence_place(const struct recurrences *r, tape_ref *list, int sequence, int k);
 tape_ref recurrence_staged(const struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent);
 tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tape_ref ref);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What depends on k alone: names, places and factors of a coefficient, k a number or that of a loop. */
 #include "recurrences.h"
-#include "step/tapes.h"
+#include "step/exponential/recipe.h"
 
 /* ---- names ---- */
 
@@ -29,14 +29,14 @@ void recurrence_check_turn(const struct recurrences *r, int sequence, int k)
 		internal_error(r->step, "a part of a coefficient is wanted in another turn of the loop");
 }
 
-static int column_of(const struct recurrences *r, int k)
+int recurrence_column(const struct recurrences *r, int k)
 {
 	return !in_loop(k) ? k : r->x->order + 1;
 }
 
 tape_ref *recurrence_place(const struct recurrences *r, tape_ref *list, int sequence, int k)
 {
-	return &list[sequence * (r->x->order + 2) + column_of(r, k)];
+	return &list[sequence * (r->x->order + 2) + recurrence_column(r, k)];
 }
 
 /* What depends on the k of the loop and is no number of a node */
