@@ -289,7 +289,7 @@ static int PL(between)(const PL_TYPE *s, const real u[], int fresh, real end, re
         PL(find_limit)(&p, end);
         wrong = PL_ADAPTIVE && p.parts++ == PL_TRIES ? PL_TOO_MANY_STEPS : PL(advance)(&p, &inaccurate);
     }
-    return wrong != 0 ? wrong : PL(status_of)(&p) | (inaccurate ? PL_INACCURATE : 0);
+    return wrong != 0 ? PL_CAUSE(s, p.done * PL_H, y, wrong) : PL(status_of)(&p) | (inaccurate ? PL_INACCURATE : 0);
 }
 
 /* ---- a state that was set ---- */

@@ -538,7 +538,7 @@ static int PL(reach)(PL_TYPE *s, const real u[], real end, real y[PL_STATES])
     for (i = 0; i < PL_STATES; i++) {
         y[i] = s->start[i];
     }
-    return wrong;
+    return PL_CAUSE(s, PL(since)(s) * PL_H, y, wrong);
 }
 
 /* The states of a step of h; what else takes part in it moves on behind. */

@@ -462,7 +462,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
     if (!PL(is_lost)(s->next)) {
         return;
     }
-    s->status |= PL_LOST;
+    s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
     for (i = 0; i < PL_STATES; i++) {
         s->next[i] = s->y[i];
         s->left[i] = s->low[i];
@@ -530,7 +530,7 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     }
 #endif
     if (PL(is_lost)(next)) {
-        s->status |= PL_LOST;
+        s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
     } else {
         for (i = 0; i < PL_STATES; i++) {
             s->y[i] = next[i];

@@ -130,6 +130,7 @@
 #undef PL_LOSES
 #undef PL_LOST
 #undef PL_MATRICES
+#undef PL_MASSES
 #undef PL_MAX_EVENTS
 #undef PL_MAX_SPLITS
 #undef PL_MEASURED
@@ -230,6 +231,8 @@
 #undef PL_TABLES
 #undef PL_PASSES
 #undef PL_PAST_SAMPLES
+#undef PL_PIVOT
+#undef PL_CAUSE
 #undef PL_PUT_BACK
 #undef PL_TERMS
 #undef PL_TOLERANCE

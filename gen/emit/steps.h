@@ -64,7 +64,8 @@ bool rhs_needs_math(const struct emitter *e);
 
 /* ---- emit_constraints.c ---- */
 
-void emit_constraints(const struct emitter *e);                   /* NAME_misses, where there are some */
+void emit_constraints(const struct emitter *e);                   /* NAME_misses, NAME_masses, where there are some */
+int  moving_masses(const struct emitter *e);                      /* rows of the latter; 0: there is none */
 bool constraints_need_math(const struct emitter *e);
 
 /* ---- emit_normal.c: steps in normal modes ---- */

@@ -45,7 +45,7 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct value **output;      /* per output statement; NULL: not linear */
 	struct impact_law **impact_law; /* per `when` and stop; NULL: its error was reported */
 	int masses;                 /* blocks of equations in which the mass matrix moves */
-	struct moving_mass { const struct node *node; struct linear_system system; } *mass;
+	struct moving_mass { const struct node *node; struct linear_system system; mpq_t *start; } *mass; /* start: M */
 	struct constraint *constraint; /* one per multiplier */
 	struct form **multiplier;   /* solved for */
 };

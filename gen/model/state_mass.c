@@ -71,7 +71,7 @@ bool has_highest(const struct building *b, const struct form *form, int coord)
 struct starting {
 	struct building *b;
 	struct point *start;
-	const struct moving_mass *mass;
+	struct moving_mass *mass;
 };
 
 /* ---- M and f ---- */
@@ -291,7 +291,7 @@ static void solve_block(struct solving *w, int block)
 	*written = (struct written_system){ n, highest, F };
 	const struct linear_system e = { n, M, f, written };
 	w->b->model->equations.moving_mass = node;
-	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e };
+	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e, NULL };
 	for (int i = 0; i < n; i++) {
 		struct form *solution = kept_solution(&w->b->collector, node, &e, i);
 		if (order[i] < w->coords)
@@ -341,15 +341,19 @@ static void check_mass_of(void *context)
 	const struct linear_system *system = &work->mass->system;
 	const int n = system->n;
 	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
+	mpq_t *start = rationals((size_t)(n * n));
 	int column;
 	for (int i = 0; i < n * n; i++) {
 		const struct form *entry = form_at(work->start, system->M[i]);
 		if (!is_constant(entry))
 			return;
 		constant_value(&work->b->collector, entry, value[i]);
+		mpq_set(start[i], value[i]);
 	}
-	if (rational_inverse(n, value, inverse, &column))
+	if (rational_inverse(n, value, inverse, &column)) {
+		work->mass->start = start;
 		return;
+	}
 	const struct basis *highest = &system->written->highest[column];
 	error(work->mass->node->start, "another start, or a mass that moves with it",
 	      "the mass matrix is singular at the start: the equations do not determine %s%s there",

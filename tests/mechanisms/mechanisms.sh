@@ -157,4 +157,55 @@ step 0.01
 SPEC
 ! "$PLGEN" --equilibrium falls.spec >log 2>&1 && grep -q 'no equilibrium is found from' log
 result $? 'no equilibrium of what falls'
+# M = 2 cos(a) vanishes at pi/2, which the motion reaches at 0.20492...: the last good state has the energy of
+# the start, 4 cos(1) + 1, and stands shortly before; that time is the integral of sqrt(cos(a)/(E - a)).
+printf "model ends\ncoord a\nenergy T = cos(a)*a'^2, V = a\ninit a = 1, a' = 2\nstep 0.01\n" >ends.spec
+cat >kept.c <<'C'
+#include "ends.h"
+#include <math.h>
+#include <stdio.h>
+int main(void)
+{
+    ends s;
+    int steps = 0;
+    real y[2];
+    ends_init(&s);
+    while (ends_status(&s) == 0 && steps < 100) {
+        ends_step(&s);
+        steps++;
+    }
+    ends_get(&s, y);
+    const double left = acos(-1)/2 - y[0], off = cos(y[0])*y[1]*y[1] + y[0] - (4*cos(1) + 1);
+    printf("%d steps, status %d, %g before pi/2, energy off by %g\n", steps, ends_status(&s), left, off);
+    const int small = sizeof y[0] == 4;
+    return !(steps == 21 && ends_status(&s) == PL_SINGULAR_MASS && fabs(left) < (small ? 1e-3 : 1e-11) &&
+             fabs(off) < (small ? 1e-1 : 1e-3));
+}
+C
+for options in '--scheme taylor' '--scheme radau' '--scheme auto' '--real float'; do
+	real=double
+	[ "$options" = '--real float' ] && real=float
+	# shellcheck disable=SC2086
+	"$PLGEN" $options --bundle ends.spec -o ends.c 2>log && $run_cc -Dreal=$real kept.c ends.c -lm -o kept 2>log &&
+		./kept >log
+	result $? "a singular mass keeps the last good state, $options"
+done
+"$plrun" ends.spec 1 >ends.csv 2>log
+[ $? = 1 ] && [ "$(tail -n 1 ends.csv | cut -d , -f 1)" = 0.2 ] &&
+	grep -qF 't = 0.21: the mass matrix is singular, or gradients of constraints depend on each other' log
+result $? 'a singular mass, what plrun prints'
+# On the axes x y = 0 the gradient (y, x) vanishes where they cross, at t = 1: that state is kept
+cat >axes.spec <<'SPEC'
+model axes
+coord x, y
+energy T = (x'^2 + y'^2)/2
+constraint axes: x*y = 0
+init x = 1, x' = -1
+scheme taylor
+step 0.25
+SPEC
+"$plrun" axes.spec 2 >axes.csv 2>log
+[ $? = 1 ] && [ "$(tail -n 1 axes.csv)" = '0.75,0.25,0,-1,0' ] &&
+	grep -qF 't = 1: the mass matrix is singular, or gradients of constraints depend on each other' log
+result $? 'gradients of constraints that vanish'
 tap_end

@@ -262,7 +262,8 @@ static void emit_include(const struct emitter *e)
 		   { "CONTACTS", meets_contacts(e) }, { "TERMS", d ? terms_of_events(e) : 0 },
 		   { "WAYS", d ? d->functions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
-		   { "FLOORS", has_floors(e) }, { "CONSTRAINTS", e->model->equations.correction != NULL });
+		   { "FLOORS", has_floors(e) }, { "CONSTRAINTS", e->model->equations.correction != NULL },
+		   { "MASSES", moving_masses(e) });
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (has_switching(e))

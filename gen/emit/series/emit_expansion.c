@@ -71,8 +71,9 @@ void emit_expansion_place(const struct emitter *e)
 static void emit_keep(const struct emitter *e)
 {
 	say_wrapped(e, format("if (%s) {  /* one of them is not finite */\n", is_not_finite(e, "next", "")));
-	say(e, "        s->status |= PL_NOT_FINITE;\n"
-	       "    } else {\n");
+	say(e, moving_masses(e) ? "        s->status |= $n_cause(s, 0, y, PL_NOT_FINITE);\n"
+				: "        s->status |= PL_NOT_FINITE;\n");
+	say(e, "    } else {\n");
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = next%d;\n"
 		       "        s->low[%d] = low%d;\n", i, i, i, i);
@@ -244,7 +245,8 @@ static void emit_algorithm(const struct emitter *e)
 		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
 		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
-		   { "AT", e->step->series.emitted }, { "CONSTRAINTS", e->model->equations.correction != NULL });
+		   { "AT", e->step->series.emitted }, { "CONSTRAINTS", e->model->equations.correction != NULL },
+		   { "MASSES", moving_masses(e) });
 	if (has_switching(e))
 		emit_switching_macros(e);
 	if (looks_at_tolerance(e))
