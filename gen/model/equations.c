@@ -357,7 +357,11 @@ void check_mass(const struct building *b)
 	int n = model->n, column;
 	RATIONALS *inverse = rationals((size_t)n * (size_t)n);
 	bool regular = leading_inverse(&model->system, inverse, &column);
-	if (regular)
+	const struct energy *kinetic;
+	const int negative = negative_mass(b, n, n, model->system.M, &kinetic);
+	if (negative >= 0)
+		report_negative_mass(b, kinetic, negative);
+	if (regular || negative >= 0)
 		return;
 	for (int j = n - 1; j >= 0; j--)
 		if (zero_column(model, j))

@@ -333,6 +333,52 @@ void solve_for_highest(struct building *b, struct segment_equations *s)
 
 /* ---- at the start ---- */
 
+/* The first of n rows whose pivot in L D L^T is below 0 by more than rounding of constants; -1: there is none, or M, n
+ * x n in rows of `width`, is not symmetric. Constraints come last, rows without mass have no pivot. */
+static int negative_pivot(int n, int width, mpq_t *M)
+{
+	RATIONALS *rest = rationals((size_t)(n * n)), *size = rationals(n + 1);
+	RATIONAL part = ZERO;
+	for (int i = 0; i < n * n; i++) {
+		mpq_set(rest[i], M[i / n * width + i % n]);
+		if (!mpq_equal(M[i / n * width + i % n], M[i % n * width + i / n]))
+			return -1;
+	}
+	for (int k = 0; k < n; k++) {
+		mpq_abs(size[k], M[k * width + k]);
+		mpq_div_2exp(size[k], size[k], 60);
+	}
+	for (int k = 0; k < n; k++) {
+		mpq_neg(part, rest[k * n + k]);
+		if (mpq_cmp(part, size[k]) > 0)
+			return k;
+		for (int i = k + 1; i < n && mpq_sgn(part) < 0; i++) {
+			mpq_div(size[n], rest[i * n + k], rest[k * n + k]);
+			for (int j = k + 1; j < n; j++) {
+				mpq_mul(part, size[n], rest[k * n + j]);
+				mpq_sub(rest[i * n + j], rest[i * n + j], part);
+			}
+			mpq_neg(part, rest[k * n + k]);
+		}
+	}
+	return -1;
+}
+
+int negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic)
+{
+	*kinetic = NULL;
+	for (int i = b->spec->energies - 1; i >= 0; i--)
+		if (b->spec->energy[i].kind == 'T')
+			*kinetic = &b->spec->energy[i];
+	return *kinetic && b->spec->equations == 0 ? negative_pivot(n, width, M) : -1;
+}
+
+void report_negative_mass(const struct building *b, const struct energy *kinetic, int coord)
+{
+	say_error(kinetic->value->start, NULL, "negative kinetic energy along %s: sign of T?",
+		  b->model->names.coord[coord]);
+}
+
 /* M where the spec starts; what inputs change in it is not looked at */
 static void check_mass_of(void *context)
 {
@@ -350,6 +396,15 @@ static void check_mass_of(void *context)
 		constant_value(&work->b->collector, entry, value[i]);
 		mpq_set(start[i], value[i]);
 	}
+	const struct energy *kinetic;
+	int coords = 0;
+	while (coords < n && system->written->highest[coords].index < model->n)
+		coords++;
+	const int negative = negative_mass(work->b, coords, n, value, &kinetic);
+	if (negative >= 0)
+		report_negative_mass(work->b, kinetic, system->written->highest[negative].index);
+	if (negative >= 0)
+		return;
 	if (rational_inverse(n, value, inverse, &column)) {
 		work->mass->start = start;
 		return;
