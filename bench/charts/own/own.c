@@ -17,14 +17,22 @@
 
 struct history history;
 
+/* Steps in an output, and tolerances as 10 to the minus these; fewer where there are many states. Radau of s stages
+ * holds its estimate to the power (s + 1)/(2 s) of the tolerance, so it needs smaller ones to be as accurate. */
+static const int parts[] = {1, 2, 4, 8, 16, 32, 64, 256, 0}, parts_large[] = {1, 4, 16, 64, 128, 0};
+enum { LARGE = N > 12 };
+static const int digits[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 0}, digits_large[] = {4, 7, 10, 13, 0};
+static const int digits_radau[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 15, 17, 0},
+	digits_radau_large[] = {4, 7, 10, 13, 16, 0};
+
 #define RADAU "Radau IIA as in the kept charts, Jacobian by differences; equations inlined"
 static const struct peer peers[] = {
 	{"RK4", false, rk4, "classical, steps in an output; equations inlined"},
 	{"Dormand-Prince", true, own_dormand, "5(4), PI controller, free interpolant of order 4; equations inlined"},
 	{"DOP853", true, own_dop853, "as in the kept charts, interpolant of order 7; equations inlined"},
-	{"RADAU5", true, own_radau5, RADAU},
-	{"RADAU9", true, own_radau9, RADAU},
-	{"RADAU13", true, own_radau13, RADAU},
+	{"RADAU5", true, own_radau5, RADAU, .digits = LARGE ? digits_radau_large : digits_radau},
+	{"RADAU9", true, own_radau9, RADAU, .digits = LARGE ? digits_radau_large : digits_radau},
+	{"RADAU13", true, own_radau13, RADAU, .digits = LARGE ? digits_radau_large : digits_radau},
 	{"GSL rk8pd", true, own_rk8pd, "driver with scaled control, applied to each output time"},
 	{"CVODE Adams", true, own_adams, "fixed-point iteration, output from its interpolant"},
 	{"CVODE BDF", true, own_bdf, "Newton, dense, Jacobian by differences, output from its interpolant"},
@@ -37,10 +45,6 @@ static const struct peer peers[] = {
 	 has_literals, true},
 };
 enum { PEERS = sizeof peers / sizeof *peers, MOST_LINES = 200 };
-/* Steps in an output, and tolerances as 10 to the minus these; fewer where there are many states */
-static const int parts[] = {1, 2, 4, 8, 16, 32, 64, 256, 0}, parts_large[] = {1, 4, 16, 64, 128, 0};
-static const int digits[] = {3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 0}, digits_large[] = {4, 7, 10, 13, 0};
-enum { LARGE = N > 12 };
 
 struct line {
 	const struct peer *peer;        /* NULL: ours */
@@ -228,6 +232,8 @@ static const int *settings_of(const struct peer *peer)
 		return never;
 	if (peer->once)
 		return once;
+	if (peer->digits)
+		return peer->digits;
 	if (peer->tolerance)
 		return LARGE ? digits_large : digits;
 	return LARGE ? parts_large : parts;

@@ -93,6 +93,7 @@ struct peer {
 	/* to this model, whose scales are known; NULL: to every one */
 	bool (*applies)(void);
 	bool once;                      /* its step is an output */
+	const int *digits;              /* tolerances of its own; NULL: those of all */
 };
 
 /* Of the kept charts: kept_solvers.c, kept_dop853.c, kept_radau.c, kept_regions.c. Absolute tolerances

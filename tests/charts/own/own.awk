@@ -4,12 +4,14 @@ function say(text) { print text; bad = 1 }
 NR == 1 { read_head($0, column); next }
 {
 	split("", row)
-	split_row($0, row)
+	n = split_row($0, row)
 	method = row[column["method"]]; setting = row[column["setting"]]; error = row[column["largest"]]
 	word = row[column["word"]]; agreement = row[column["truth_agreement"]] + 0
 	if (word !~ /^(ok|failed|gave up|refused)$/) say(method ", " setting ": word " word)
 	if ((word == "ok") != is_number(error)) say(method ", " setting ": error " error ", word " word)
 	rows[method]++
+	# only expansions have a projection, and the others say so: then taylor must be good
+	if (word == "refused" && row[n] ~ /constraints are kept by projection behind each expansion/) constrained = 1
 	if (word != "ok") next
 	good[method]++
 	if (!(method in least) || error + 0 < least[method]) least[method] = error + 0
@@ -35,7 +37,8 @@ END {
 	for (i = 1; i <= n; i++)
 		if (rows[peers[i]] < 4 || !good[peers[i]])
 			say(peers[i] ": " rows[peers[i]] + 0 " rows, " good[peers[i]] + 0 " good")
-	if (!("exact" in good) && !("etdrk4" in good)) say("nothing of plgen's")
+	if (!("exact" in good) && !("etdrk4" in good) && !constrained) say("neither exact nor etdrk4")
+	if (constrained && !("taylor" in good)) say("no taylor")
 	# radau gives up where the beams start: loads there are differences of which rounding leaves little
 	if (!("exact" in good) && (!("auto" in good) || (!("radau" in good) && name !~ /^beam/)))
 		say("neither auto nor radau")
@@ -63,6 +66,10 @@ END {
 		limits = limits "1e-8;1e-8;2e-8"
 	# a force that jumps, which RK4 meets anywhere in its steps: found are 0.09, and from 3e-9 to 6e-5
 	if (name == "two_masses") limits = "0.3;1e-6;1e-8;1e-5;2e-6;1e-7;1e-5;1e-4;1e-4"
+	# chaotic: within this history an error at the start grows by 6e5; RADAU5 reaches its limit with 1e-15
+	if (name == "double_pendulum") limits = "1e-6;2e-8;2e-8;1e-7;2e-7;1e-8;1e-8;1e-8;2e-8"
+	# RADAU9 takes about a step an output, 1/4 rad of the top, with 1e-13 and 1e-16 alike: found is 7.2e-8
+	if (name == "spherical_joint") limits = "1e-6;2e-9;2e-9;1e-7;1e-7;2e-9;1e-8;1e-7;2e-8"
 	split(limits, limit_of, ";")
 	for (i = 1; i <= m; i++) {
 		limit = method_of[i] == "DOP853" && name == "bilinear" ? 5e-9 : limit_of[i]
