@@ -259,15 +259,20 @@ static real PL(iterate)(const real y[PL_STATES], const real known[PL_STAGES][PL_
 #endif
 
 /* 1 over the size of each state; where that was 0 so far, of what the step makes of it, or one of h.  Beside contacts
- * it is a millionth of that at least: what is let go starts at a rounding of 0. */
+ * it is a millionth of that at least: what is let go starts at a rounding of 0.  And where it was 0, a millionth of the
+ * largest of its kind, as in measure.h: far down a chain that starts at rest there is but rounding. */
 static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real unit[PL_STATES])
 {
+    real largest[3] = {0, 0, 0};
     int i, j;
     dt = dt > PL_H ? dt : PL_H;
     for (i = 0; i < PL_STATES; i++) {
         const int c = PL(coord)(i);
         real most = 0;
         unit[i] = s->unit[i];
+        if (unit[i] * largest[PL_KIND(i)] < 1 && unit[i] > 0) {
+            largest[PL_KIND(i)] = 1 / unit[i];
+        }
         if (unit[i] != 0 && !PL_CONTACTS) {
             continue;
         }
@@ -283,6 +288,12 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
             continue;
         }
         unit[i] = most > 1 / PL_UNIT ? 1 / most : most > 0 ? PL_UNIT : 1;
+        largest[PL_KIND(i)] = most > largest[PL_KIND(i)] ? most : largest[PL_KIND(i)];
+    }
+    for (i = 0; i < PL_STATES; i++) {
+        if (s->unit[i] == 0 && unit[i] * largest[PL_KIND(i)] > 1048576) {
+            unit[i] = 1048576 / largest[PL_KIND(i)];
+        }
     }
 }
 

@@ -167,19 +167,15 @@ cat >kept.c <<'C'
 int main(void)
 {
     ends s;
-    int steps = 0;
-    real y[2];
+    real y[2], near = sizeof *y == 4 ? 1e-3 : 1e-11;
     ends_init(&s);
-    while (ends_status(&s) == 0 && steps < 100) {
+    while (ends_status(&s) == 0 && s.k < 100)
         ends_step(&s);
-        steps++;
-    }
     ends_get(&s, y);
-    const double left = acos(-1)/2 - y[0], off = cos(y[0])*y[1]*y[1] + y[0] - (4*cos(1) + 1);
-    printf("%d steps, status %d, %g before pi/2, energy off by %g\n", steps, ends_status(&s), left, off);
-    const int small = sizeof y[0] == 4;
-    return !(steps == 21 && ends_status(&s) == PL_SINGULAR_MASS && fabs(left) < (small ? 1e-3 : 1e-11) &&
-             fabs(off) < (small ? 1e-1 : 1e-3));
+    const double left = acos(-1)/2 - y[0], off = cos(y[0])*y[1]*y[1] + y[0] - 4*cos(1) - 1;
+    printf("status %d, %g before pi/2, energy off by %g\n", ends_status(&s), left, off);
+    return s.k != 21 || ends_status(&s) != PL_SINGULAR_MASS || fabs(left) > near ||
+           fabs(off) > (near > 1e-9 ? 0.1 : 1e-3);
 }
 C
 for options in '--scheme taylor' '--scheme radau' '--scheme auto' '--real float'; do
@@ -208,4 +204,15 @@ SPEC
 [ $? = 1 ] && [ "$(tail -n 1 axes.csv)" = '0.75,0.25,0,-1,0' ] &&
 	grep -qF 't = 1: the mass matrix is singular, or gradients of constraints depend on each other' log
 result $? 'gradients of constraints that vanish'
+# Six links at rest at one angle: the last begin to move by high powers of time, by rounding at first
+sed -e 's/14\]/6]/g;/^tol/d;s/^init.*/init q = [1; 1; 1; 1; 1; 1]\/10/' \
+	-e 's/^output.*/friction 2 between q[1], ground/' \
+	-e '/^step/i stop between sum(sin(q)), ground at 0.7 restitution 0.5' "$cases/chain_of_fourteen.spec" >rest.spec
+for scheme in taylor radau; do
+	"$plrun" --scheme $scheme rest.spec 0.5 2>log | tail -n 1
+done | awk -F , '{ for (i = 1; i <= NF; i++) { d = $i - was[i]; was[i] = $i
+		if (NR == 2 && d*d > worst) worst = d*d } }
+	END { print "radau is off taylor by " sqrt(worst)
+	      exit !(NR == 2 && was[1] == 0.5 && sqrt(worst) < 1e-7) }' >>log
+result $? 'a chain at rest with contacts, by radau'
 tap_end
