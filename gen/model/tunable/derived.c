@@ -151,6 +151,10 @@ void warn_of_unread(const struct model *model)
 	const struct spec *spec = model->spec;
 	unsigned read = 0;
 	each_function(model->spec, add_read, &read);
+	for (int i = 0; i < spec->energies; i++) {
+		const struct energy *e = &spec->energy[i];
+		read |= params_read(e->value) | (e->point ? params_read(e->point) : 0);
+	}
 	for (int k = 0; k < spec->tunables - spec->derived && !model->relative; k++)
 		if (!(read >> k & 1))
 			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
