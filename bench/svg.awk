@@ -2,7 +2,8 @@
 # awk -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel is the unit
 # and points within a tenth of a line that goes on are left out; what lines, marks, areas and texts have in common is
 # said once; marks that are not drawn are not defined, and a mark at many places is a marker of one path. Of what lies
-# between two curves areas come first, then lines, marks and texts; what is none of these stays as it was.
+# between two curves areas come first, then lines, marks and texts; what is none of these stays as it was, ten times as
+# large.
 function attribute(name,    value) {
 	if (!match(tag, "[ \n\t]" name " *= *('[^']*'|\"[^\"]*\")")) return ""
 	value = substr(tag, RSTART, RLENGTH)
@@ -19,18 +20,14 @@ function colour(text,    part) {
 	return sprintf("#%02x%02x%02x", part[1], part[2], part[3])
 }
 function tenths(x) { return x < 0 ? -int(-10 * x + 0.5) : int(10 * x + 0.5) }
-function number(t,    text) {
-	text = sprintf("%.10g", t / 10)
-	sub(/^0\./, ".", text); sub(/^-0\./, "-.", text)
+function pair(a, b) { return a (b < 0 ? "" : " ") b }
+# A list of numbers, each in tenths
+function rounded(text,    part, n, i) {
+	if (text !~ /^[-+0-9., ]+(px)?$/) return text
+	n = split(text, part, ",")
+	text = tenths(part[1])
+	for (i = 2; i <= n; i++) text = text "," tenths(part[i])
 	return text
-}
-function pair(a, b,    text) {
-	text = number(b)
-	return number(a) (text ~ /^-/ ? "" : " ") text
-}
-function rounded(text) {
-	if (text !~ /^[-+0-9.]+(px)?$/) return text
-	return number(tenths(text + 0))
 }
 
 # ---- lines ----
@@ -47,51 +44,55 @@ function straight(from, to,    dx, dy, size, i, along, across) {
 	}
 	return 1
 }
-# One polyline X, Y of tenths, closed or not; the points of marks all stay
-function polyline(count, closed, all,    text, i, at, last, dx, dy) {
-	if (count < 1 || (count == 1 && !all)) return ""
-	text = "M" pair(X[1], Y[1])
+# One polyline X, Y of tenths, closed or not, after what its path has, which ends in x_of, y_of; the points of marks all
+# stay
+function polyline(path, count, closed, all,    text, i, at, last, dx, dy) {
+	if (count < 1 || (count == 1 && !all)) return
+	text = path in x_of ? "m" pair(X[1] - x_of[path], Y[1] - y_of[path]) : "M" pair(X[1], Y[1])
+	x_of[path] = X[closed ? 1 : count]; y_of[path] = Y[closed ? 1 : count]
 	last = ""
 	for (at = 1; at < count; at = i) {
 		for (i = at + 1; !all && i < count && i < at + 60 && straight(at, i + 1); i++) ;
 		dx = X[i] - X[at]; dy = Y[i] - Y[at]
 		if (!all && dx == 0 && dy == 0) continue
-		if (dy == 0) { text = text "h" number(dx); last = "h" }
-		else if (dx == 0) { text = text "v" number(dy); last = "v" }
+		if (dy == 0) { text = text "h" dx; last = "h" }
+		else if (dx == 0) { text = text "v" dy; last = "v" }
 		else if (last == "l") text = text (dx < 0 ? "" : " ") pair(dx, dy)
 		else { text = text "l" pair(dx, dy); last = "l" }
 	}
 	if (all && count == 1) text = text "h0"
-	return text (closed ? "z" : "")
+	hold(path, text (closed ? "z" : ""))
 }
 # d of a path of straight lines
-function lines_of(d,    text, word, words, i, n, at) {
+function lines_of(path, d,    word, words, i, n, at) {
 	gsub(/[\n\t]/, " ", d)
 	words = split(d, word, " ")
-	text = ""; n = 0
+	n = 0
 	for (i = 1; i <= words; i++) {
-		if (word[i] ~ /^[Zz]$/) { text = text polyline(n, 1, 0); n = 0; continue }
-		if (word[i] ~ /^M/) { text = text polyline(n, 0, 0); n = 0 }
+		if (word[i] ~ /^[Zz]$/) { polyline(path, n, 1, 0); n = 0; continue }
+		if (word[i] ~ /^M/) { polyline(path, n, 0, 0); n = 0 }
 		split(substr(word[i], 2), at, ",")
 		n++; X[n] = tenths(at[1]); Y[n] = tenths(at[2])
 	}
-	return text polyline(n, 0, 0)
+	polyline(path, n, 0, 0)
 }
-function area_of(points,    word, words, i, at) {
+function area_of(path, points,    word, words, i, at) {
 	words = split(points, word, /[ \n\t]+/)
 	for (i = 1; i <= words && word[i] != ""; i++) {
 		split(word[i], at, ",")
 		X[i] = tenths(at[1]); Y[i] = tenths(at[2])
 	}
-	return polyline(i - 1, 1, 0)
+	polyline(path, i - 1, 1, 0)
 }
 
 # ---- what stands between two curves ----
 
-# held[kind, key]: of kind area, line, mark or text
-function hold(kind, key, text,    place) {
-	place = kind SUBSEP key
-	if (!(place in held)) { held[place] = ""; keys[kind]++; key_of[kind, keys[kind]] = key }
+# held[place], place: kind, key; of kind area, line, mark or text
+function hold(place, text,    part) {
+	if (!(place in held)) {
+		split(place, part, SUBSEP)
+		held[place] = ""; keys[part[1]]++; key_of[part[1], keys[part[1]]] = part[2]
+	}
 	held[place] = held[place] text
 }
 function flush(    kinds, kind, k, i, key, text) {
@@ -103,7 +104,7 @@ function flush(    kinds, kind, k, i, key, text) {
 			if (kind[k] == "text") body = body "<g" key ">\n" text "</g>\n"
 			else body = body "<path" key " d=\"" text "\"/>\n"
 		}
-	split("", held); split("", keys); split("", key_of)
+	split("", held); split("", keys); split("", key_of); split("", x_of); split("", y_of)
 }
 function mark(    where, at, size, key, n) {
 	where = attribute("transform")
@@ -119,7 +120,7 @@ function hold_marks(    m, i) {
 	for (m = 1; m <= markers; m++) {
 		if (!marks[m]) continue
 		for (i = 1; i <= marks[m]; i++) { X[i] = mark_x[m, i]; Y[i] = mark_y[m, i] }
-		hold("mark", " style=\"marker:url(#m" m ")\"", polyline(marks[m], 0, 1))
+		polyline("mark" SUBSEP " style=\"marker:url(#m" m ")\"", marks[m], 0, 1)
 		marks[m] = 0
 	}
 }
@@ -140,7 +141,7 @@ function text_place(    where, at) {
 		sub(/.*rotate/, "rotate", where)
 		return " transform=\"translate(" pair(tenths(at[1]), tenths(at[2])) ")" where "\""
 	}
-	return " x=\"" number(tenths(at[1])) "\" y=\"" number(tenths(at[2])) "\""
+	return " x=\"" tenths(at[1]) "\" y=\"" tenths(at[2]) "\""
 }
 function span(    own) {
 	own = said("font-size", rounded(attribute("font-size"))) said("dy", rounded(attribute("dy"))) \
@@ -153,7 +154,7 @@ function span(    own) {
 function end_of_text() {
 	gsub(/<tspan[^>]*><\/tspan>$/, "", content)
 	gsub(/\n/, " ", content); gsub(/  /, " \\&#160;", content)
-	if (content != "") hold("text", key, "<text" place ">" content "</text>\n")
+	if (content != "") hold("text" SUBSEP key, "<text" place ">" content "</text>\n")
 }
 
 # ---- tag by tag ----
@@ -183,17 +184,24 @@ function path(    line, d) {
 	line = colour(attribute("stroke"))
 	if (line == "") line = stroke
 	if (line == "currentColor") line = ink
-	line = said("stroke", line) said("stroke-width", width == 1 ? "" : width "") \
-		said("stroke-dasharray", attribute("stroke-dasharray"))
+	line = said("stroke", line) said("stroke-width", width == 1 ? "" : tenths(width)) \
+		said("stroke-dasharray", rounded(attribute("stroke-dasharray")))
 	if (attribute("fill") != "") line = line said("fill", colour(attribute("fill")))
 	if (d ~ /[^-MLZz0-9., \n\t]/) other()
-	else hold("line", line, lines_of(d))
+	else lines_of("line" SUBSEP line, d)
 }
-function other(    text) {
+function other(    text, i, length_name, part) {
 	end_of_segment()
 	text = tag
 	gsub(/[ \n\t]+/, " ", text)
 	if (name == "image") sub(/ preserve/, " image-rendering=\"pixelated\"&", text)
+	if (name == "path") text = text " transform=\"scale(10)\""
+	else for (i = split("x y width height cx cy r", length_name, " "); i > 0; i--)
+		if (match(text, " " length_name[i] " ?= ?'[0-9.]+'")) {
+			split(substr(text, RSTART, RLENGTH), part, "'")
+			text = substr(text, 1, RSTART - 1) said(length_name[i], tenths(part[2])) \
+				substr(text, RSTART + RLENGTH)
+		}
 	body = body "<" text ">\n"
 }
 BEGIN { RS = "<" }
@@ -204,6 +212,7 @@ BEGIN { RS = "<" }
 }
 name == "svg" {
 	view = attribute("viewBox"); wide = attribute("width"); high = attribute("height")
+	gsub(/[1-9][0-9]*/, "&0", view)
 	next
 }
 name == "defs" && !defined { defining = 1; next }
@@ -212,7 +221,10 @@ defining {
 	if (tag ~ /id='gp/) { gsub(/[ \n\t]+/, " ", tag); shape[attribute("id")] = "<" tag ">" }
 	next
 }
-name == "rect" && ground == "" { ground = "<" tag ">"; next }
+name == "rect" && ground == "" {
+	ground = "<rect width=\"100%\" height=\"100%\"" said("fill", attribute("fill")) "/>"
+	next
+}
 # A curve's name, where it is not how it was plotted
 name == "title" && curve {
 	curve = 0
@@ -233,8 +245,8 @@ writing && name == "/tspan" { content = content (plain[spans--] ? "" : "</tspan>
 name == "path" { path(); next }
 name == "use" { mark(); next }
 name == "polygon" {
-	hold("area", said("fill", colour(attribute("fill"))) said("fill-opacity", attribute("fill-opacity")) \
-		" shape-rendering=\"crispEdges\"", area_of(attribute("points")))
+	area_of("area" SUBSEP said("fill", colour(attribute("fill"))) said("fill-opacity", \
+		attribute("fill-opacity")) " shape-rendering=\"crispEdges\"", attribute("points"))
 	next
 }
 # the head of the file
@@ -263,11 +275,11 @@ END {
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
 			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" \
-				said("xlink:href", "#" part[1]) said("transform", "scale(" part[2] ")") \
+				said("xlink:href", "#" part[1]) said("transform", "scale(" tenths(part[2]) ")") \
 				said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
 	}
 	print ground
-	printf "<g fill=\"none\"%s>\n%s</g>\n</svg>\n", said("font-family", family), body
+	printf "<g fill=\"none\" stroke-width=\"10\"%s>\n%s</g>\n</svg>\n", said("font-family", family), body
 }

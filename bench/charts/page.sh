@@ -67,7 +67,7 @@ picture() {
 	text=$(text_of "$1")
 	found=$(sh $charts/finding.sh "$1" "$folder" | escaped)
 	[ -n "$found" ] || found=$(printf '%s' "$text" | tr '\n' ' ' | sed 's/\. .*/./')
-	size=$(sed -n '/viewBox/{s/.*="0 0 \([0-9]*\) \([0-9]*\)".*/width="\1" height="\2"/p;q;}' "$folder/$1.svg")
+	size=$(sed -n '/viewBox/{s/.*="0 0 \([0-9]*\)0 \([0-9]*\)0".*/width="\1" height="\2"/p;q;}' "$folder/$1.svg")
 	fits=
 	if there "${1}_narrow.svg"; then
 		fits=' fits'
