@@ -30,6 +30,22 @@ function of(name) { return f[column[name]] }
 function span(x) { if (low == "" || x < low) low = x; if (high == "" || x > high) high = x }
 function quoted(text) { return text ~ /[,"]/ ? "\"" text "\"" : text }
 function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); gsub(/>/, "\\&gt;", text); return text }
+# A row of letters as runs, 12c for twelve c, and back
+function runs(text,    i, n, line) {
+	for (i = 1; i <= length(text); i += n) {
+		for (n = 1; substr(text, i + n, 1) == substr(text, i, 1); n++) ;
+		line = line (n > 1 ? n : "") substr(text, i, 1)
+	}
+	return line
+}
+function letters_of(text,    n, line) {
+	for (; text != ""; text = substr(text, 2)) {
+		n = match(text, /^[0-9]+/) ? substr(text, 1, RLENGTH) + 0 : 1
+		if (RLENGTH > 0) text = substr(text, RLENGTH + 1)
+		for (; n > 0; n--) line = line substr(text, 1, 1)
+	}
+	return line
+}
 # The place of k among n by rising values
 function place_of(k, n, value,    i, at) {
 	for (i = at = 1; i <= n; i++) at += value[i] < value[k] || (value[i] == value[k] && i < k)

@@ -41,6 +41,9 @@ derive plmap.csv plmap_raw.csv ratios
 derive matrix.csv precision.csv matrix
 derive break_even.csv 'generation.csv precision.csv' after
 derive precision_check.csv precision_raw.csv within
+for name in energy integrators needs operator_boundary papers_beam_tip quality; do
+	derive $name.csv $name.csv digits -v to=4
+done
 
 mkdir "$work/pictures"
 # shellcheck disable=SC2016

@@ -134,6 +134,18 @@ END
 [ ! -s log ]
 result $? 'curves of given times: thinned as by hand, and once more the same'
 
+# growth over a grid as runs of letters, and cells of them again; numbers of three digits
+printf '%s\n' method,wh,zeta,rho,growth RK4,1,0,0,-0.5 RK4,2,0,0,-0.5 RK4,4,0,0,none RK4,8,0,0,inf >map_raw.csv
+sh "$made" classes -v bounds='-0.1 1' map_raw.csv >map.csv 2>log
+printf 'method,zeta,first_wh,ratio_of_wh,class_of_growth\nRK4,0,1,2,2a-c\n' | cmp - map.csv >>log 2>&1
+sh "$made" cells -v name=RK4 map.csv 2>>log | sed 's/.*,//' | tr '\n' ' ' >cells
+printf '0 0 NaN 2 ' | cmp - cells >>log 2>&1
+printf '%s\n' 'x,"y",z' '1.23456e-05 none,1.23456,"12,345"' >long.csv
+sh "$made" digits -v to=3 long.csv >digits.csv 2>>log
+printf '%s\n' 'x,y,z' '1.23e-05 none,1.23,"12,345"' | cmp - digits.csv >>log 2>&1
+[ ! -s log ]
+result $? 'maps and digits: as by hand'
+
 whole "$kept"
 result $? 'doc/charts: pages have alts, captions, links that lead somewhere; nothing is on no page'
 titled "$kept" 30
