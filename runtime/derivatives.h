@@ -7,6 +7,7 @@
  *     PL_SLOPED                  1: it is
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
+ *     PL(d_by)[][]               of each column what pl_derivatives says
  *     PL(step_d), PL(out_d)      a step of both; derivatives of outputs */
 #include "numbers.h"
 
@@ -135,7 +136,7 @@ const pl_derivatives PL(derivatives) = {
 #else
     NULL,
 #endif
-    PL(any_status_d)
+    PL(any_status_d), PL(d_by)
 };
 
 #include "undef.h"

@@ -605,4 +605,6 @@ typedef struct pl_derivatives {
     void (*out)(const void *s, const void *ds, PL_REAL *J);
     void (*hold)(void *ds, const PL_REAL *du);  /* before the first step; NULL where no seed is a ramp */
     unsigned (*status)(const void *ds);
+    /* Of a column by a param its value, in SI units, one of its own unit in them, and its range; 0, 0: it has none */
+    const PL_REAL (*by)[4];
 } pl_derivatives;

@@ -327,3 +327,17 @@ double instance_time(const struct instance *i)
 	const struct machine *m = i->machine;
 	return m->single ? (double)m->modelf->time(i->state) : m->model->time(i->state);
 }
+
+void instance_move(struct instance *i, const double *offset)
+{
+	const struct machine *m = i->machine;
+	double *y = need(calloc((size_t)m->states + 1, sizeof *y));
+	instance_get(i, y);
+	for (int k = 0; k < m->states; k++)
+		y[k] += offset[k];
+	if (m->single)
+		m->modelf->set(i->state, 0, narrowed(i, y, m->states));
+	else
+		m->model->set(i->state, 0, y);
+	free(y);
+}

@@ -77,6 +77,8 @@ static void set_params(struct start *s)
 
 static void check_end(const struct start *s)
 {
+	if (s->options.fit)
+		return;
 	if (s->options.until < 0 && !s->options.input)
 		wrong_usage("when does it end? plrun MODEL.spec T, in seconds");
 	if (s->options.input && s->machine->inputs == 0)
@@ -130,7 +132,7 @@ static int run_once(struct start *s)
 	struct stats stats = stats_new(m->outputs);
 	uint64_t every = steps_between(o, m), crossed = 0;
 	job.crossed = &crossed;
-	job.record = o->input ? record_read(o, m) : NULL;
+	job.record = o->input ? record_read(o, o->input, m, m->inputs, 0) : NULL;
 	char *error = plan_run(&job);
 	if (error && job.record)                /* its last line is where more was expected */
 		fail_at((struct place){ job.record->path, job.record->last_line, "", 0, 0 }, NULL, error);
@@ -177,6 +179,15 @@ static int run_sweep(struct start *s, struct workers w)
 	return status;
 }
 
+static int run_fit(struct start *s)
+{
+	struct output *output;
+	FILE *to = output_open(s->options.output, &output);
+	int status = fit_run(s->tools, &s->options, s->code, s->machine, s->params, to);
+	output_done(output, to);
+	return status;
+}
+
 int main(int argc, char **argv)
 {
 	struct start s = { 0 };
@@ -200,7 +211,7 @@ int main(int argc, char **argv)
 	machine_show(s.machine, &s.view, &s.options);
 	check_end(&s);
 	set_params(&s);
-	status = s.options.sweep ? run_sweep(&s, w) : run_once(&s);
+	status = s.options.fit ? run_fit(&s) : s.options.sweep ? run_sweep(&s, w) : run_once(&s);
 	if (fclose(stdout) != 0)
 		fail(WRONG_DATA, format("cannot write to standard output: %s", strerror(errno)));
 	workers_end();

@@ -94,6 +94,46 @@ static void take_sweep(struct options *o, const char *value)
 	o->range[o->ranges++] = range_of(value);
 }
 
+/* k or k=FROM:TO */
+static void add_fit(struct options *o, char *word)
+{
+	char *range = strchr(word, '='), *to = range ? strchr(range, ':') : NULL;
+	double *ends;
+	o->fit = need(reallocarray(o->fit, o->fits + 2, sizeof *o->fit));
+	o->fit_range = need(reallocarray(o->fit_range, o->fits + 1, sizeof *o->fit_range));
+	ends = o->fit_range[o->fits];
+	ends[0] = ends[1] = 0;
+	if (range)
+		*range = 0;
+	if (to)
+		*to = 0;
+	if (!*word || (range && !(to && read_number(range + 1, &ends[0]) && read_number(to + 1, &ends[1]) &&
+				  ends[0] < ends[1])))
+		wrong_usage("--fit takes names of params and states, k,c,x, each with a range or none: k=100:900");
+	o->fit[o->fits++] = word;
+	o->fit[o->fits] = NULL;
+}
+
+static void take_fit(struct options *o, const char *value)
+{
+	char *rest = need(strdup(value));
+	if (o->fit)
+		wrong_usage("--fit: one list, k,c,x");
+	for (char *word; (word = strsep(&rest, ",")) != NULL;)
+		add_fit(o, word);
+}
+
+static void take_profile(struct options *o, const char *value) { (void)value; o->profile = true; }
+
+static void take_sigma(struct options *o, const char *value)
+{
+	const struct pair pair = pair_of("--sigma", "NAME=NUMBER", value);
+	double sigma;
+	if (!read_number(pair.value, &sigma) || !(sigma > 0))
+		wrong_usage(format("--sigma takes a number above 0, found '%s'", value));
+	add_pair(&o->sigma, &o->sigmas, pair);
+}
+
 static void take_column(struct options *o, const char *value)
 {
 	add_pair(&o->column, &o->columns, pair_of("--column", "NAME=HEADER", value));
@@ -178,6 +218,12 @@ static const struct row {
 	  take_sweep },
 	{ "sweep", "K=A:B:N", "... for N values of K from A to B, with :log in equal ratios; again: every combination",
 	  take_sweep },
+	{ "fit", "LIST", "params, initial values by which outputs come closest to records: SPEC [T] --fit k,c,x r.csv",
+	  take_fit },
+	{ "sigma", "NAME=X", "... how far samples of this output scatter (default: each as its own values do)",
+	  take_sigma },
+	{ "profile", NULL, "... in the place of the table the sum of squares as each of them is held elsewhere",
+	  take_profile },
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
 	{ "histories", NULL, "... its picture: every run, at most 8, one on the other", take_histories },
 	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
@@ -289,6 +335,12 @@ static void take_word(struct options *o, const char *word)
 		wrong_usage(format("one spec at a time: surplus argument '%s'", word));
 	if (o->plot && !o->plot_file && dot && !(dot[1] >= '0' && dot[1] <= '9') && dot[1])
 		wrong_usage(format("--plot draws .svg, .png or .pdf, found '%s'", word));
+	double number;
+	if (!read_number(word, &number)) {
+		o->fit_record = need(reallocarray(o->fit_record, o->fit_records + 1, sizeof *o->fit_record));
+		o->fit_record[o->fit_records++] = word;
+		return;
+	}
 	if (o->until >= 0)
 		wrong_usage(format("surplus argument '%s': the time of the end is given", word));
 	o->until = time_of("T", word);
@@ -324,8 +376,29 @@ static void check_chart(const struct options *o)
 		wrong_usage("--chart reads the spec many times: it has to be a file");
 }
 
+/* A word that is no number is a record of a fit; else a time that cannot be read */
+static void check_fit(const struct options *o)
+{
+	const char *surplus = o->sweep ? "--sweep" : o->stats ? "--stats" : o->window ? "--psd" : o->show ? "--show"
+			    : o->every >= 0 ? "--every" : o->units ? "--units" : NULL;
+	if (!o->fit && o->fit_records && o->until >= 0)
+		wrong_usage(format("surplus argument '%s': the time of the end is given", o->fit_record[0]));
+	if (!o->fit && o->fit_records)
+		time_of("T", o->fit_record[0]);
+	if (!o->fit && (o->sigmas || o->profile))
+		wrong_usage(format("%s goes with --fit", o->sigmas ? "--sigma" : "--profile"));
+	if (o->fit && o->fit_records == 0)
+		wrong_usage("--fit: which record? plrun SPEC [T] --fit k,c record.csv");
+	if (o->fit && surplus)
+		wrong_usage(format("--fit and %s: one at a time", surplus));
+	for (size_t i = 0; o->fit && i < o->passed_count; i++)
+		if (strncmp(o->passed[i], "--sensitivity=", strlen("--sensitivity=")) == 0)
+			wrong_usage("--fit has derivatives by its own list, and no --sensitivity beside it");
+}
+
 static void check(const struct options *o)
 {
+	check_fit(o);
 	check_chart(o);
 	check_look(o);
 	if (!o->spec)
@@ -351,7 +424,7 @@ static void check(const struct options *o)
 		wrong_usage("a sweep may read the spec many times: it has to be a file");
 	if (o->input && strcmp(o->input, "-") == 0 && strcmp(o->spec, "-") == 0)
 		wrong_usage("standard input is the spec, or the samples");
-	if (!o->input && (o->columns || o->time))
+	if (!o->input && !o->fit && (o->columns || o->time))
 		wrong_usage(format("%s goes with --input", o->columns ? "--column" : "--time"));
 	if (o->every == 0)
 		wrong_usage("--every: expected a time above 0");
@@ -379,7 +452,12 @@ void read_options(int argc, char **argv, struct options *o)
 			w.next++;
 		}
 	}
+	check(o);
+	const char *list = o->fit ? o->fit[0] : "";
+	for (size_t i = 1; i < o->fits; i++)
+		list = format("%s,%s", list, o->fit[i]);
+	if (o->fit)
+		pass_on(o, format("--sensitivity=%s", list));
 	pass_on(o, NULL);
 	o->passed_count--;
-	check(o);
 }

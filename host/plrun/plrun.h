@@ -35,6 +35,8 @@
  *     sweep.c     lines of params, and what a run with each comes to
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
+ *     fit.c       values of params, so that outputs come closest to what was measured (GSL)
+ *     fitted.c    what a fit has found: values, intervals, correlations, profiles, a picture
  *     chart.c     error against time, with other solvers
  *
  * A param that the spec declares tunable changes without compiling (`retune`); any other is given to plgen as -D, and
@@ -124,6 +126,13 @@ struct options {
 	bool peak, resume, stats, histories, units;
 	const char *show;                       /* NULL: the outputs */
 	struct look look;
+	const char **fit;                       /* params and initial values, NULL-terminated; NULL: no fit */
+	double (*fit_range)[2];                 /* of each; 0, 0: none is given */
+	const char **fit_record;
+	size_t fits, fit_records;
+	struct pair *sigma;
+	size_t sigmas;
+	bool profile;
 	const struct cosines *window;           /* of a power spectral density; NULL: none */
 	unsigned long segment;                  /* steps; 0: as the run is long */
 	double overlap;                         /* parts of a segment */
@@ -275,6 +284,7 @@ void instance_out(struct instance *i, double *out);
 void instance_get(struct instance *i, double *y);
 void instance_allowed(struct instance *i, double *y);   /* where the machine has it */
 int instance_status(const struct instance *i);
+void instance_move(struct instance *i, const double *offset);  /* adds it to the state, at t = 0 */
 double instance_time(const struct instance *i);
 
 /* ---- table.c ---- */
@@ -309,13 +319,14 @@ struct place header_place(const struct table *t, size_t column);
 
 struct record {
 	const char *path;
-	int inputs;
+	int inputs, width;
 	size_t rows;
-	double *value;                          /* rows x inputs */
+	double *value;                          /* rows x width: inputs, then what outputs were, NAN: missing */
 	double *time;                           /* [s] from the first on; NULL: row k is at k h */
 	unsigned long last_line;
 };
-struct record *record_read(const struct options *o, const struct machine *m);
+/* That many inputs and outputs of the machine, all or none; a record without inputs has its own times */
+struct record *record_read(const struct options *o, const char *path, const struct machine *m, int inputs, int outputs);
 /* Does row k stand at k h, for all k? Then samples are rows. */
 bool record_on_grid(const struct record *r, double h);
 #define MOST_STEPS (UINT64_C(1) << 53)
@@ -331,6 +342,7 @@ struct job {
 	const struct machine *machine;
 	const struct record *record;            /* NULL: no inputs */
 	const double *params;                   /* NULL: as the model has them */
+	const double *offset;                   /* NULL, or what is added to each initial state */
 	double h, until;                        /* until < 0: to the end of the record */
 	bool resampled, reported;               /* reported: progress is */
 	uint64_t steps;                         /* these two by plan_run */
@@ -398,6 +410,41 @@ void stats_add(void *who, uint64_t k, const double *out);
 double stats_rms(const struct stats *s, int output);
 /* crossed: breakpoints; it counts where the machine counts them */
 void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed);
+
+/* ---- fit.c, fitted.c ---- */
+
+struct unknown {                        /* what a fit looks for */
+	const char *name;
+	int column, record;                     /* of the derivatives; of all records, or an initial value of one */
+	int param, state;                       /* a tunable param; a state whose initial value it is; or -1 */
+	double start, low, high, factor;        /* in the param's own unit, which has `factor` SI units */
+};
+struct fit;
+struct fit_rows {                       /* of samples, over sigma */
+	size_t rows;
+	int unknowns;
+	double *residual, *jacobian;            /* rows; rows x unknowns */
+};
+struct estimate {
+	struct fit *fit;
+	double *value, squares;                 /* per unknown; the sum of squares of residuals */
+	bool *held;                             /* per unknown: at the end of its range, or given */
+	struct fit_rows at;                     /* there */
+};
+int fit_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+	    const double *params, FILE *to);  /* exit status */
+int fit_unknowns(const struct fit *f, const struct unknown **unknown);
+size_t fit_samples(const struct fit *f);
+double unknown_clamped(const struct unknown *u, double value);  /* in its range */
+/* The best values of all that is not held, from e->value on */
+void fit_solve(struct estimate *e);
+/* Calls with the name of each output that was measured, the record's number, and rows of t, value and model */
+typedef void fit_watch(void *who, const char *output, size_t record, size_t rows, const double *row);
+/* Residuals at these values; returns how a run has failed, or NULL. each: NULL for none */
+const char *fit_evaluate(struct fit *f, const double *value, struct fit_rows *to, fit_watch *each, void *who);
+void fit_each(const struct estimate *e, fit_watch *each, void *who);
+void fitted_print(const struct estimate *e, const struct options *o, FILE *to);
+void fitted_draw(const struct estimate *e, const struct options *o, const char *name);
 
 /* ---- chart.c ---- */
 

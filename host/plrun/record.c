@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A recorded table as samples of the inputs. Row k is the sample at k h, as everywhere; with a column of times the
- * first row is t = 0, and where times are not k h the record goes straight from row to row. */
+/* A recorded table as samples of the inputs, and for a fit as what outputs were. Row k is the sample at k h, as
+ * everywhere; with a column of times the first row is t = 0, and where times are not k h the record goes straight from
+ * row to row. */
 #define _GNU_SOURCE
 #include "plrun.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -11,10 +13,17 @@
 enum { NONE = -1 };
 
 struct choice {                         /* which columns are read */
-	int *of_input;
+	const struct machine *machine;
+	int inputs, names;              /* names: inputs, then measured outputs */
+	int *of;                        /* of each; an output may have none */
 	int time;
-	bool chosen;                    /* by --column or --time: others may stand beside */
+	bool chosen;                    /* by --column or --time, or for a fit: others may stand beside */
 };
+
+static const char *name_of(const struct choice *c, int i)
+{
+	return i < c->inputs ? c->machine->input_names[i] : c->machine->output_names[i - c->inputs];
+}
 
 /* "t", "time", "Time [s]", "t/s"; another unit is reported where it stands */
 static bool is_time(const struct table *t, size_t column)
@@ -55,11 +64,11 @@ static const char *all_headers(const struct table *t)
 	return list;
 }
 
-static const char *all_inputs(const struct machine *m)
+static const char *all_names(const struct choice *c)
 {
 	const char *list = "";
-	for (int i = 0; i < m->inputs; i++)
-		list = format("%s%s%s", list, i ? ", " : "", m->input_names[i]);
+	for (int i = 0; i < c->names; i++)
+		list = format("%s%s%s", list, i ? ", " : "", name_of(c, i));
 	return list;
 }
 
@@ -72,43 +81,64 @@ static int named_column(const struct table *t, const char *option, const char *h
 	return column;
 }
 
-static void take_columns(const struct options *o, const struct table *t, const struct machine *m, struct choice *c)
+static bool names_an_input(const struct machine *m, const char *name)
+{
+	for (int i = 0; i < m->inputs; i++)
+		if (strcmp(m->input_names[i], name) == 0)
+			return true;
+	return false;
+}
+
+/* Of a fit the record and --input may be two files: each has its own columns. */
+static void take_named(const struct options *o, const struct table *t, struct choice *c)
 {
 	for (size_t k = 0; k < o->columns; k++) {
-		int input = 0;
-		while (input < m->inputs && strcmp(m->input_names[input], o->column[k].name) != 0)
-			input++;
-		if (input == m->inputs)
-			wrong_usage(format("--column: the model has no input '%s'; its inputs: %s", o->column[k].name,
-					   all_inputs(m)));
-		c->of_input[input] = named_column(t, "--column", o->column[k].value);
+		int i = 0;
+		while (i < c->names && strcmp(name_of(c, i), o->column[k].name) != 0)
+			i++;
+		if (i < c->names)
+			c->of[i] = named_column(t, "--column", o->column[k].value);
+		else if (!o->fit || (c->names > c->inputs && !names_an_input(c->machine, o->column[k].name)))
+			wrong_usage(format("--column: the model has no %s '%s'; its %s: %s",
+					   o->fit ? "output" : "input", o->column[k].name,
+					   o->fit ? "names" : "inputs", all_names(c)));
 	}
-	for (int i = 0; i < m->inputs; i++)
-		if (c->of_input[i] == NONE)
-			c->of_input[i] = find_column(t, m->input_names[i]);
-	for (int i = 0; i < m->inputs; i++)
-		if (c->of_input[i] == NONE)
+}
+
+static void take_columns(const struct options *o, const struct table *t, struct choice *c)
+{
+	int found = 0;
+	take_named(o, t, c);
+	for (int i = 0; i < c->names; i++) {
+		if (c->of[i] == NONE)
+			c->of[i] = find_column(t, name_of(c, i));
+		if (c->of[i] == NONE && i < c->inputs)
 			fail_at(header_place(t, 0), format("--column %s=HEADER says which it is; there are %s",
-							   m->input_names[i], all_headers(t)),
-				format("no column is called '%s', as the input is", m->input_names[i]));
+							   name_of(c, i), all_headers(t)),
+				format("no column is called '%s', as the input is", name_of(c, i)));
+		found += i >= c->inputs && c->of[i] != NONE;
+	}
+	if (c->names > c->inputs && found == 0)
+		fail_at(header_place(t, 0), format("--column NAME=HEADER says which is which; the outputs are %s",
+						   all_names(c)), "no column is called as an output is");
 	if (o->time)
 		c->time = named_column(t, "--time", o->time);
 }
 
-static bool is_taken(const struct choice *c, const struct machine *m, int column)
+static bool is_taken(const struct choice *c, int column)
 {
-	for (int i = 0; i < m->inputs; i++)
-		if (c->of_input[i] == column)
+	for (int i = 0; i < c->names; i++)
+		if (c->of[i] == column)
 			return true;
 	return c->time == column;
 }
 
 /* What is not an input is the time, or without use: so is what has no name, as row numbers and empty columns do. */
-static void take_rest(const struct table *t, const struct machine *m, struct choice *c)
+static void take_rest(const struct table *t, struct choice *c)
 {
 	const char *unused = "";
 	for (int i = 0; i < (int)t->columns; i++) {
-		if (is_taken(c, m, i))
+		if (is_taken(c, i))
 			continue;
 		if (c->time == NONE && is_time(t, (size_t)i)) {
 			c->time = i;
@@ -117,7 +147,7 @@ static void take_rest(const struct table *t, const struct machine *m, struct cho
 		if (!c->chosen && *t->header[i].text)
 			fail_at(header_place(t, (size_t)i),
 				format("the inputs are %s; with --column or --time other columns are passed over",
-				       all_inputs(m)),
+				       all_names(c)),
 				format("a column too many: no input is called '%s'", t->header[i].text));
 		unused = format("%s%s'%s'", unused, *unused ? ", " : "", t->header[i].text);
 	}
@@ -125,31 +155,32 @@ static void take_rest(const struct table *t, const struct machine *m, struct cho
 		say_note(format("%s: not read: %s", t->at.path, unused));
 }
 
-static struct choice choose(const struct options *o, const struct table *t, const struct machine *m)
+static void choose(const struct options *o, const struct table *t, struct choice *c)
 {
-	struct choice c = { need(calloc((size_t)m->inputs, sizeof(int))), NONE, o->columns || o->time };
-	for (int i = 0; i < m->inputs; i++)
-		c.of_input[i] = t->header ? NONE : i;
+	for (int i = 0; i < c->names; i++)
+		c->of[i] = t->header ? NONE : i;
 	if (t->header) {
-		take_columns(o, t, m, &c);
-		take_rest(t, m, &c);
-	} else if (c.chosen) {
+		take_columns(o, t, c);
+		take_rest(t, c);
+	} else if (o->fit) {
+		fail_at((struct place){ t->at.path, t->at.number + 1, t->text + t->next, 0, 0 },
+			format("outputs are %s", all_names(c)), "expected a first line with the names of outputs");
+	} else if (c->chosen) {
 		fail(WRONG_DATA, format("%s: --column and --time name columns, and its first line has no names",
 					t->at.path));
-	} else if (t->columns != (size_t)m->inputs) {
+	} else if (t->columns != (size_t)c->inputs) {
 		fail_at((struct place){ t->at.path, t->at.number + 1, t->text + t->next, 0, 0 },
-			format("a first line with names says which is which; the inputs are %s", all_inputs(m)),
-			format("expected %d column%s, one for each input, found %zu", m->inputs,
-			       m->inputs == 1 ? "" : "s", t->columns));
+			format("a first line with names says which is which; the inputs are %s", all_names(c)),
+			format("expected %d column%s, one for each input, found %zu", c->inputs,
+			       c->inputs == 1 ? "" : "s", t->columns));
 	}
-	return c;
 }
 
 /* ---- the rows ---- */
 
 static void check_time(struct table *t, const struct record *r, const struct choice *c)
 {
-	size_t k = r->rows;
+	size_t k = r->rows - 1;
 	if (k > 0 && !(r->time[k] > r->time[k - 1]))
 		fail_at(table_place(t, t->cell[c->time].column), NULL,
 			format("times have to rise: %s follows %s", shortest(r->time[k], false),
@@ -181,36 +212,55 @@ static void begin_at_zero(struct record *r)
 		r->time[k] -= first;
 }
 
-struct record *record_read(const struct options *o, const struct machine *m)
+/* NAN: a sample that is missing, an empty cell or nan */
+static double measured_number(struct table *t, int column)
+{
+	if (column == NONE || !*t->cell[column].text || strcasecmp(t->cell[column].text, "nan") == 0)
+		return (double)NAN;
+	return table_number(t, (size_t)column);
+}
+
+static void take_row(struct record *r, struct table *t, const struct choice *c, size_t *room)
+{
+	r->value = grown(r->value, r->rows, room, sizeof *r->value * (size_t)r->width);
+	double *row = r->value + r->rows++ * (size_t)r->width;
+	for (int i = 0; i < c->names; i++)
+		row[i] = i < c->inputs ? table_number(t, (size_t)c->of[i]) : measured_number(t, c->of[i]);
+	r->last_line = t->at.number;
+}
+
+struct record *record_read(const struct options *o, const char *path, const struct machine *m, int inputs, int outputs)
 {
 	struct record *r = need(calloc(1, sizeof *r));
 	struct table t;
 	size_t room = 0, time_room = 0;
-	table_open(&t, o->input);
-	struct choice c = choose(o, &t, m);
+	table_open(&t, path);
+	struct choice c = { m, inputs, inputs + outputs, need(calloc((size_t)(inputs + outputs) + 1, sizeof(int))),
+			    NONE, o->columns || o->time || o->fit };
+	choose(o, &t, &c);
 	r->path = t.at.path;
-	r->inputs = m->inputs;
+	r->inputs = inputs;
+	r->width = inputs + outputs;
 	while (table_next(&t)) {
-		r->value = grown(r->value, r->rows, &room, sizeof *r->value * (size_t)m->inputs);
-		for (int i = 0; i < m->inputs; i++)
-			r->value[r->rows * (size_t)m->inputs + (size_t)i] = table_number(&t, (size_t)c.of_input[i]);
-		if (c.time != NONE) {
-			r->time = grown(r->time, r->rows, &time_room, sizeof *r->time);
-			r->time[r->rows] = table_number(&t, (size_t)c.time);
-			check_time(&t, r, &c);
-		}
-		r->rows++;
-		r->last_line = t.at.number;
+		take_row(r, &t, &c, &room);
+		if (c.time == NONE)
+			continue;
+		r->time = grown(r->time, r->rows - 1, &time_room, sizeof *r->time);
+		r->time[r->rows - 1] = table_number(&t, (size_t)c.time);
+		check_time(&t, r, &c);
 	}
 	if (r->rows == 0)
 		fail_at((struct place){ t.at.path, t.at.number + 1, "", 0, 0 }, NULL,
 			"expected rows of numbers, found the end of the file");
 	if (r->time && r->rows > 1)
 		look_for_gaps(r);
-	if (r->time)
+	if (r->time && inputs > 0)
 		begin_at_zero(r);
+	if (r->time && r->time[0] < 0)
+		fail_at((struct place){ t.at.path, r->last_line - r->rows + 1, "", 0, 0 }, NULL,
+			"a time before 0, where the model starts");
 	free(t.text);
-	free(c.of_input);
+	free(c.of);
 	return r;
 }
 
@@ -251,16 +301,16 @@ void record_say(const struct record *r, double h)
 
 void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, size_t *near, double *u)
 {
-	size_t n = (size_t)r->inputs;
+	const size_t n = (size_t)r->inputs, width = (size_t)r->width;
 	if (on_grid) {
-		memcpy(u, r->value + k * n, sizeof *u * n);
+		memcpy(u, r->value + k * width, sizeof *u * n);
 		return;
 	}
 	double t = (double)k * h;
 	while (*near + 2 < r->rows && r->time[*near + 1] <= t)
 		(*near)++;
 	size_t next = *near + 1 < r->rows ? *near + 1 : *near;
-	const double *from = r->value + *near * n, *to = r->value + next * n;
+	const double *from = r->value + *near * width, *to = r->value + next * width;
 	double part = next == *near ? 0 : (t - r->time[*near]) / (r->time[next] - r->time[*near]);
 	part = part < 1 ? part : 1;
 	for (size_t i = 0; i < n; i++)

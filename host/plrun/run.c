@@ -240,6 +240,8 @@ char *run_steps(const struct job *job, watch *each, void *who)
 	w.u = need(calloc(n + 1, sizeof *w.u));
 	char *error = job->params ? tuning_error(job, s) : NULL;
 	if (!error) {
+		if (job->offset)
+			instance_move(s, job->offset);
 		if (job->record && job->steps + (uint64_t)m->most_ahead > 0)
 			begin_samples(&w, s);
 		error = take_steps(job, s, &w, out, each, who);

@@ -515,7 +515,7 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 	      FILE *to, struct workers w)
 {
 	struct sweep s = { .tools = t, .options = o, .machine = m, .to = to };
-	s.record = o->input ? record_read(o, m) : NULL;
+	s.record = o->input ? record_read(o, o->input, m, m->inputs, 0) : NULL;
 	read_table(&s, c);
 	if (o->histories && s.rows > PICTURE_CURVES)
 		fail(WRONG_USAGE, format("--histories draws at most %d runs, and these are %zu", PICTURE_CURVES,

@@ -6,6 +6,7 @@
 #include "emit/state.h"
 #include "emit/steps.h"
 #include "model/reads.h"
+#include "model/tunable/tuning.h"
 #include "step/linear/forms.h"
 
 #include <string.h>
@@ -315,6 +316,36 @@ static void emit_start(const struct emitter *e)
 	emit_array(e, "Derivatives of the initial state", "d_initial", 2, size, value, NULL);
 }
 
+static const struct param_range *range_of_param(const struct model *model, const struct symbol *param)
+{
+	const struct tuning *t = tunables_of(model);
+	for (int k = 0; t && k < t->given; k++)
+		if (t->param[k].symbol == param)
+			return model->params.range[k];
+	return NULL;
+}
+
+/* For programs that look for other values, as a fit does; initial values and inputs have none here. */
+static void emit_values_of_columns(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const int size[] = { d->columns, 4 };
+	double *by = ARRAY(double, 4 * (size_t)d->columns);
+	for (int i = 0; i < d->columns; i++) {
+		const struct symbol *s = d->column[i].symbol;
+		const struct param_range *range = range_of_param(e->model, s);
+		by[4 * i + 1] = unit_factor(s->unit);
+		if (s->kind == SYMBOL_PARAM) {
+			RATIONAL value = ZERO;
+			param_value(s, value);
+			by[4 * i] = finite_number(e, value);
+		}
+		by[4 * i + 2] = range ? finite_number(e, range->low) : 0;
+		by[4 * i + 3] = range ? finite_number(e, range->high) : 0;
+	}
+	emit_array(e, "Of each: its value, its unit in SI units, its range, or 0 and 0", "d_by", 2, size, by, NULL);
+}
+
 void emit_step_derivatives(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -335,6 +366,7 @@ void emit_step_derivatives(const struct emitter *e)
 	emit_outputs_of_all(e);
 	emit_start(e);
 	emit_name_list(e, "d_names", d->columns, name);
+	emit_values_of_columns(e);
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps });
