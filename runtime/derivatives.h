@@ -5,6 +5,7 @@
  *     PL_TYPE, PL_DERIVATIVES    the model; how many columns
  *     PL_SEEDED                  1: some are along inputs: the last du is in ds->du, with slopes in ds->slope
  *     PL_SLOPED                  1: it is
+ *     PL_BESIDE                  1: models of their own go beside it: members left, time, PL(init_beside)(ds)
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
  *     PL(d_by)[][]               of each column what pl_derivatives says
@@ -46,6 +47,11 @@ void PL(init_d)(PL_TYPE *s, PL(d) *ds)
     int i, p;
     PL(init)(s);
     PL(set_d)(ds, NULL);
+#if PL_BESIDE
+    PL(init_beside)(ds);
+    PL(get)(s, ds->left);
+    ds->time = PL(time)(s);
+#endif
     for (p = 0; p < PL_DERIVATIVES; p++) {
         for (i = 0; i < PL_STATES; i++) {
             ds->s[p][i] = PL(d_initial)[p][i];

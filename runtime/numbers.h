@@ -14,6 +14,9 @@
 #ifndef PL_REFRESHED
 #define PL_REFRESHED 0
 #endif
+#ifndef PL_BESIDE
+#define PL_BESIDE 0
+#endif
 #ifndef PL_BLOCKS
 #define PL_BLOCKS 0
 #endif

@@ -12,6 +12,14 @@
 #undef PL_ANY_STEP
 #undef PL_ARGUMENTS
 #undef PL_AT
+#undef PL_DECLARED
+#undef PL_BESIDE
+#undef PL_BOTH
+#undef PL_MOVED
+#undef PL_OWN_OUTPUTS
+#undef PL_OWN_INPUTS
+#undef PL_OWN_STATES
+#undef PL_OF_TYPE
 #undef PL_AT_BREAKPOINTS
 #undef PL_AT_ONCE
 #undef PL_OPERATIONS

@@ -149,9 +149,9 @@ static void declare_tables(const struct emitter *e)
 		say(e, "#define $n_from_whole $n_project\n"      /* the names that both had before */
 		       "#define $n_to_whole $n_expand\n");
 	}
-	if (!e->model->delays)
+	if (!e->model->delays && !e->is_beside)
 		declare_model(e);
-	if (tells_tolerance(e))
+	if (tells_tolerance(e) && !e->is_beside)
 		announce(e, spell(e, "void   $n_allowed(const $n *s, double y[$N_STATES]);"),
 			"error that a step may make in each state; 0: the absolute tolerance alone counts");
 }
@@ -171,7 +171,8 @@ static void explain_functions(const struct emitter *e)
 
 static void emit_functions(const struct emitter *e, bool rhs)
 {
-	explain_functions(e);
+	if (!e->is_beside)
+		explain_functions(e);
 	declare_state_functions(e);
 	if (given_inputs(e))
 		declare_driven_step(e, most_samples_before(e) ? "one step of h; u: the next sample"

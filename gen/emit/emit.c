@@ -98,8 +98,10 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	e.c = identifiers_of(step->model, e.upper, e.local);
 	const int blocks = step->derivatives ? step->derivatives->blocks : 0;
 	e.beside = ARRAY(struct emitter, (size_t)blocks + 1);
-	for (int b = 0; b < blocks; b++)
+	for (int b = 0; b < blocks; b++) {
 		e.beside[b] = emitter_new(to, step->derivatives->block[b].step, options);
+		e.beside[b].is_beside = step->derivatives->apart;
+	}
 	return e;
 }
 
@@ -166,6 +168,23 @@ static void emit_all_tables(const struct emitter *e)
 	emit_peak_tables(e);
 }
 
+/* Everything that moves states, in the order in which it is called */
+static void emit_motion_of(const struct emitter *e, bool rhs)
+{
+	emit_includes(e, rhs);
+	emit_all_tables(e);
+	emit_modes(e);
+	emit_access(e);
+	emit_held_retune(e);
+	emit_if_any(e->prints->pass, e);
+	if ((e->step->is.flow == FLOW_RECIPE && !e->step->event_split) || reads_force_columns(e->model))
+		emit_remainder(e);
+	emit_if_any(e->prints->step, e);
+	emit_out(e);
+	emit_peak_step(e);
+	emit_run(e);
+}
+
 /* What is there of some models only: states between steps, many steps at once, the ways to check it */
 static void emit_further_functions(const struct emitter *e, bool rhs)
 {
@@ -180,6 +199,15 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		emit_selftest(e, has_jump(e));
 	if (rhs)
 		emit_rhs(e);
+}
+
+/* A block of derivatives that goes the way of its own step */
+static void emit_model_beside(const struct emitter *e)
+{
+	emit_motion_of(e, false);
+	emit_declared_tables(e);
+	if (e->step->series.emitted)
+		emit_if_any(e->prints->at, e);
 }
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs)
@@ -206,20 +234,11 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		emit_delay_declarations(e);
 	if (!header_name && step->derivatives)
 		emit_derivative_declarations(e);
-	emit_includes(e, rhs);
-	emit_all_tables(e);
-	emit_modes(e);
-	emit_access(e);
-	emit_held_retune(e);
-	emit_if_any(e->prints->pass, e);
-	if ((e->step->is.flow == FLOW_RECIPE && !e->step->event_split) || reads_force_columns(e->model))
-		emit_remainder(e);
-	emit_if_any(e->prints->step, e);
-	emit_out(e);
-	emit_peak_step(e);
-	emit_run(e);
+	emit_motion_of(e, rhs);
 	emit_declared_tables(e);
 	emit_further_functions(e, rhs);
+	for (int b = 0; e->step->derivatives && e->step->derivatives->apart && b < e->step->derivatives->blocks; b++)
+		emit_model_beside(&e->beside[b]);
 	if (e->step->derivatives)
 		emit_step_derivatives(e);
 	(e->model->delays ? emit_delays : emit_descriptor)(e);

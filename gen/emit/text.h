@@ -39,6 +39,7 @@ struct emitter {
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */
 	struct emitter *beside;     /* per block of the step's derivatives: of its model */
+	bool is_beside;             /* it is of such a block, as a model of its own */
 	const struct standing *at;  /* where numbers of derivatives stand; NULL: as they do in s */
 	bool at_state;              /* of a series: what is known beside the state stands in locals */
 	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */

@@ -593,7 +593,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 		silent_guard(find_symmetries, &b);
 	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
 		    request->again.undivided || request->again.derivatives > 0;
-	if (!diagnostics_errors() && !reported)
+	if (!diagnostics_errors() && (!reported || request->again.derivatives > 0))
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !reported && warnings_are_heard())
 		warn(&b);

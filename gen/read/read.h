@@ -363,6 +363,7 @@ bool is_constrained(const struct spec *spec, int component);
 bool parse_sensitivities(struct spec *spec, const struct source *source); /* of --sensitivity, instead of the spec's */
 /* To the spec, what so many derivatives follow: coordinates, equations, initial values, outputs behind its own */
 void add_derivatives(struct spec *spec, int first, int count);
+const struct node *jump_by_state(const struct spec *spec);   /* a formula that the state chooses; NULL: none jumps */
 
 /* ---- params.c: other values of params than the spec's ---- */
 

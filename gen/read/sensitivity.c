@@ -108,6 +108,49 @@ bool parse_sensitivities(struct spec *spec, const struct source *source)
 	return statement_guard(read_from_line, &p);
 }
 
+/* ---- what a derivative would have to jump at ---- */
+
+static bool reads_states(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool reads = s && (s->kind == SYMBOL_COORD || (s->kind == SYMBOL_LET && s->value && reads_states(s->value)));
+	for (int i = 0; i < node->children && !reads; i++)
+		reads = reads_states(node->child[i]);
+	return reads;
+}
+
+/* The first formula that the state chooses and that may jump there: abs, min, max, deadzone and clip do not */
+static const struct node *jump_within(const struct node *node, bool *seen)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	const bool jumps = node->kind == NODE_CHOOSE || (node->kind == NODE_CALL && node->function == FN_SGN);
+	if (jumps && reads_states(node->child[0]))
+		return node;
+	const struct node *found = NULL;
+	if (s && s->kind == SYMBOL_LET && s->value && !seen[s->number]) {
+		seen[s->number] = true;
+		found = jump_within(s->value, seen);
+	}
+	for (int i = 0; i < node->children && !found; i++)
+		found = jump_within(node->child[i], seen);
+	return found;
+}
+
+const struct node *jump_by_state(const struct spec *spec)
+{
+	bool *seen = ARRAY(bool, (size_t)spec->count.symbols + 1);
+	const struct node *found = NULL;
+	for (int i = 0; i < spec->equations && !found; i++) {
+		found = jump_within(spec->equation[i].left, seen);
+		found = found || !spec->equation[i].right ? found : jump_within(spec->equation[i].right, seen);
+	}
+	for (int i = 0; i < spec->elements && !found; i++)
+		found = jump_within(spec->element[i].value, seen);
+	for (int i = 0; i < spec->energies && !found; i++)
+		found = jump_within(spec->energy[i].value, seen);
+	return found;
+}
+
 /* ---- the equations of the derivatives ---- */
 
 struct varying {                    /* one derivative */

@@ -3,13 +3,25 @@
  * are taken. What it does not couple leaves no trace there, and each of its numbers is rounded once. */
 #include "step.h"
 #include "model/reads.h"
+#include "model/series/remainder.h"
+
+/* By the scheme of the model: the derivative of what it computes is what the scheme computes of the derivative. */
+static const char *scheme_of_derivatives(const struct step *step)
+{
+	const struct model *model = step->model;
+	if (!has_remainder(step))
+		return scheme_name(SCHEME_EXACT);
+	return model->request.scheme_at.source ? model->request.scheme : scheme_name(model->scheme);
+}
 
 /* What of the request concerns how a step is made faster, or reports it, does not hold for the derivatives. */
 static struct request request_of_derivatives(const struct step *step, int first, int count)
 {
 	struct request request = step->model->request;
 	request.again = (struct again){ .derivatives_from = first, .derivatives = count };
-	request.scheme = scheme_name(SCHEME_EXACT);
+	request.scheme = scheme_of_derivatives(step);
+	if (has_remainder(step))
+		request.prefix = format("%s_d%d", step->model->name, first);
 	request.modes = NULL;
 	request.reduce = request.compensated = request.selftest = false;
 	request.fast = request.phasors = request.batch = false;
@@ -47,8 +59,17 @@ static struct step *step_of(const struct step *step, int first, int count)
 	struct step *made = model ? step_build(model) : NULL;
 	if (!made)
 		abandon();
-	check_loads(step, made, &step->model->spec->sensitivity[first]);
+	if (!has_remainder(step))
+		check_loads(step, made, &step->model->spec->sensitivity[first]);
 	return made;
+}
+
+/* Where a formula jumps as the state chooses it, the derivatives would have to jump. */
+static void check_smooth(const struct model *model)
+{
+	const struct node *jump = jump_by_state(model->spec);
+	if (jump && model->remainder.smooth.kind == SMOOTH_JUMP)
+		error(jump->start, NULL, "a sensitivity where the state chooses a formula that jumps is not built yet");
 }
 
 /* As many together as have a step that is unrolled: those share the loads' functions. */
@@ -65,8 +86,11 @@ static void derive(void *context)
 	const char *against = step_objection(step, CAN_DERIVATIVES);
 	if (against)
 		error(spec->sensitivity[0].at, NULL, "%s%s", words_before(CAN_DERIVATIVES), against);
+	if (has_remainder(step))
+		check_smooth(step->model);
 	struct derivatives *d = NEW(struct derivatives);
-	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity };
+	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity,
+				    .apart = has_remainder(step) };
 	for (int i = 0; i < d->columns; i++)
 		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
 	const int together = columns_together(step);
@@ -87,7 +111,7 @@ bool find_derivatives(struct step *step)
 bool derivatives_read_load(const struct step *step, int load)
 {
 	bool read = false;
-	for (int b = 0; step->derivatives && b < step->derivatives->blocks; b++) {
+	for (int b = 0; step->derivatives && !step->derivatives->apart && b < step->derivatives->blocks; b++) {
 		const struct step *made = step->derivatives->block[b].step;
 		const int own = load_alike(&made->branch->system, &step->branch->system.load[load]);
 		read = read || (own != NONE && load_acts(&made->branch->system, &made->branch->system.load[own]));

@@ -129,6 +129,7 @@ struct derivatives {
 	int columns;
 	const struct sensitivity *column;
 	bool seeded;                /* some are along inputs */
+	bool apart;                 /* each block goes the way of its own step, beside the model */
 	int blocks;
 	struct derivative_block *block;
 };

@@ -34,6 +34,11 @@ static const char *column_list(const struct derivatives *d)
 	return list;
 }
 
+static const char *column_count(int columns)
+{
+	return columns > 1 ? format("%d columns", columns) : "a column";
+}
+
 /* In calls, and where they are declared */
 static const char *input_arguments(const struct emitter *e)
 {
@@ -67,6 +72,8 @@ void emit_derivative_declarations(const struct emitter *e)
 	const char **name = ARRAY(const char *, (size_t)d->columns);
 	for (int i = 0; i < d->columns; i++)
 		name[i] = index_name(&d->column[i]);
+	for (int b = 0; b < d->blocks && d->apart; b++)
+		emit_declarations(&e->beside[b], false);
 	open_declarations(e, format("%s_D", e->upper), "");
 	const char *words = "Derivatives by %s, a column each; by an input: along the change du of its samples.  s is "
 			    "left by $n_step_d as it is by $n_step.";
@@ -80,6 +87,11 @@ void emit_derivative_declarations(const struct emitter *e)
 		say(e, "    double du[$N_INPUTS];       /* of the last sample */\n");
 	if (d->seeded && e->ramps)
 		say(e, "    double slope[$N_INPUTS];    /* of that [1/s] */\n");
+	for (int b = 0; b < d->blocks && d->apart; b++)
+		say(e, "    %s block%d;  /* the states and %s */\n", e->beside[b].name, b,
+		    column_count(d->block[b].columns));
+	if (d->apart)
+		say(e, "    double left[$N_STATES], time;  /* of s, when both were stepped last */\n");
 	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
 	       "};\n");
 	announce(e, spell(e, "void   $n_init_d($n *s, $n_d *ds);"),
@@ -243,6 +255,62 @@ static void emit_block_at(const struct emitter *e, const struct derivative_block
 	close_function(e, format("s y%s", unread_inputs(e)));
 }
 
+/* ---- a block that is a model of its own ---- */
+
+static const char *end_of_series(const struct emitter *b)
+{
+	const struct truncation *t = truncation_of(b);
+	if (b->step->is.flow != FLOW_SERIES)
+		return "0";
+	return t->adaptive ? "((b)->served == (b)->valid)" : t->over > 1 ? "((b)->served == 0)" : "1";
+}
+
+static void emit_block_beside(const struct emitter *e, int number)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const struct derivative_block *block = &d->block[number];
+	const struct emitter *b = &e->beside[number];
+	const int states = b->system->states, inputs = given_inputs(b);
+	int *column = ARRAY(int, (size_t)states), *state = ARRAY(int, (size_t)states);
+	int *input = ARRAY(int, (size_t)inputs + 1);
+	for (int i = 0; i < states; i++)
+		column[i] = column_of(e->step->model->written, block, i, &state[i]);
+	for (int i = 0; i < inputs; i++)
+		input[i] = i < given_inputs(e) ? i : input_of_seed(e, block, i);
+	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state%s */\n", e->name,
+	    inputs ? "; of each input the model's" : "");
+	emit_int_list(b, "moved_column", states, column);
+	emit_int_list(b, "moved_state", states, state);
+	if (inputs)
+		emit_int_list(b, "moved_input", inputs, input);
+	emit_sizes(b, "beside.h", { "STATES", states }, { "INPUTS", inputs }, { "OUTPUTS", b->model->outputs },
+		   { "AT", b->step->series.emitted }, { "PAST_SAMPLES", most_samples_before(b) },
+		   { "OWN_STATES", e->system->states }, { "OWN_INPUTS", given_inputs(e) },
+		   { "OWN_OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
+		   { "FROM", block->first }, { "MOVED", block->columns }, { "DECLARED", e->model->declared_outputs });
+	say(e, "#define PL_OF(name) %s_##name\n"
+	       "#define PL_OF_TYPE %s\n"
+	       "#define PL_ENDED(b) %s\n"
+	       "#include \"beside.h\"\n", e->name, e->name, end_of_series(b));
+}
+
+static void emit_beside(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	for (int b = 0; b < d->blocks; b++)
+		emit_block_beside(e, b);
+	open_function(e, NULL, "static void $n_init_beside($n_d *ds)");
+	for (int b = 0; b < d->blocks; b++)
+		say(e, "    %s_init(&ds->block%d);\n", e->beside[b].name, b);
+	close_function(e, "");
+}
+
+/* NULL for what it has not */
+static const char *samples_beside(const struct emitter *e)
+{
+	return !given_inputs(e) ? "NULL, NULL" : e->step->derivatives->seeded ? "u, du" : "u, NULL";
+}
+
 /* ---- the functions of the model ---- */
 
 /* y: the states as written */
@@ -262,9 +330,26 @@ static void emit_keep_seeds(const struct emitter *e)
 	}
 }
 
+static void emit_steps_beside(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
+	for (int b = 0; b < d->blocks; b++)
+		say(e, "    %s_step_beside(&ds->block%d, s, ds, %s);\n", e->beside[b].name, b, samples_beside(e));
+	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
+	emit_keep_seeds(e);
+	say(e, "    $n_get(s, ds->left);\n"
+	       "    ds->time = $n_time(s);\n");
+	close_function(e, "");
+}
+
 static void emit_step_of_all(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
+	if (d->apart) {
+		emit_steps_beside(e);
+		return;
+	}
 	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
 	emit_state_now(e);
 	for (int b = 0; b < d->blocks; b++)
@@ -278,9 +363,15 @@ static void emit_at_of_all(const struct emitter *e)
 {
 	open_function(e, NULL, "void $n_at_d(const $n *s, const $n_d *ds%s, double tau, double S[$N_D][$N_STATES])",
 		      input_parameters(e));
-	emit_state_now(e);
+	const bool apart = e->step->derivatives->apart;
+	if (!apart)
+		emit_state_now(e);
 	for (int b = 0; b < e->step->derivatives->blocks; b++)
-		say(e, "    $n_at_d%d(s, y, ds%s, tau, S);\n", b, input_arguments(e));
+		if (apart)
+			say(e, "    %s_at_beside(s, ds, &ds->block%d, %s, tau, S);\n", e->beside[b].name, b,
+			    samples_beside(e));
+		else
+			say(e, "    $n_at_d%d(s, y, ds%s, tau, S);\n", b, input_arguments(e));
 	close_function(e, "");
 }
 
@@ -288,7 +379,10 @@ static void emit_outputs_of_all(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
 	open_function(e, NULL, "void $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])");
-	if (e->model->declared_outputs) {
+	if (e->model->declared_outputs && d->apart) {
+		for (int b = 0; b < d->blocks; b++)
+			say(e, "    %s_out_beside(s, ds, &ds->block%d, J);\n", e->beside[b].name, b);
+	} else if (e->model->declared_outputs) {
 		emit_state_now(e);
 		for (int b = 0; b < d->blocks; b++)
 			say(e, "    $n_out_d%d(s, y, ds, J);\n", b);
@@ -353,12 +447,14 @@ void emit_step_derivatives(const struct emitter *e)
 	for (int i = 0; i < d->columns; i++)
 		name[i] = column_name(&d->column[i]);
 	say(e, "\n/* ---- derivatives ---- */\n");
-	for (int b = 0; b < d->blocks; b++) {
+	if (d->apart)
+		emit_beside(e);
+	for (int b = 0; b < d->blocks && !d->apart; b++) {
 		emit_block_step(e, &d->block[b], b);
 		if (e->model->declared_outputs)
 			emit_block_outputs(e, &d->block[b], b);
 	}
-	for (int b = 0; b < d->blocks && has_values_between(e); b++)
+	for (int b = 0; b < d->blocks && !d->apart && has_values_between(e); b++)
 		emit_block_at(e, &d->block[b], b);
 	emit_step_of_all(e);
 	if (has_values_between(e))
@@ -369,6 +465,6 @@ void emit_step_derivatives(const struct emitter *e)
 	emit_values_of_columns(e);
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
-		   { "SLOPED", d->seeded && e->ramps });
+		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart });
 	say_include(e, "derivatives.h");
 }

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* beside.h: derivatives of a model by a model of its own, whose states are those of the model and their derivatives by
+ * some params: it goes the way of its own step beside the model.  Included by the file of the model for each of them,
+ * which defines before it
+ *
+ *     PL(name), PL_OF(name)      the prefix of this model, and of the one that it is beside: PL_OF_TYPE
+ *     PL_TYPE, PL_STATES, PL_INPUTS, PL_OUTPUTS      of this one
+ *     PL_OWN_STATES, PL_OWN_OUTPUTS, PL_OWN_INPUTS, PL_DERIVATIVES, PL_SEEDED, PL_SLOPED    of the one beside
+ *     PL_FROM, PL_MOVED         the first of its columns, and how many it has
+ *     PL_DECLARED                  1: outputs are declared; else they are the states
+ *     PL_ENDED(b)                whether b has no more of a series in hand, so that its states may be written
+ *     PL_PAST_SAMPLES            of an input before the last
+ *
+ *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
+ *     PL(moved_state)[PL_STATES]     and of which state
+ *     PL(moved_input)[PL_INPUTS]     of each input the model's; behind the first PL_OWN_INPUTS stand seeds */
+#include "numbers.h"
+
+/* The states and derivatives that the model and ds have */
+static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_STATES])
+{
+    real y[PL_OWN_STATES];
+    int i;
+    PL_OF(get)(s, y);
+    for (i = 0; i < PL_STATES; i++) {
+        z[i] = PL(moved_column)[i] < 0 ? y[PL(moved_state)[i]] : ds->s[PL(moved_column)[i]][PL(moved_state)[i]];
+    }
+}
+
+/* Whether the model and ds are what the last step of both has left */
+static int PL(is_left)(const PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds, const real z[PL_STATES])
+{
+    real w[PL_STATES];
+    int i, left = PL_OF(time)(s) == ds->time;
+    PL(get)(b, w);
+    for (i = 0; i < PL_STATES; i++) {
+        left = left && z[i] == (PL(moved_column)[i] < 0 ? ds->left[PL(moved_state)[i]] : w[i]);
+    }
+    return left;
+}
+
+static void PL(take_samples)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
+{
+#if PL_INPUTS > 0
+    int i;
+    for (i = 0; i < PL_OWN_INPUTS; i++) {
+        b->u[i] = s->u[i];
+#if PL_PAST_SAMPLES > 0
+        {
+            int k;
+            for (k = 0; k < PL_PAST_SAMPLES; k++) {
+                b->past[i][k] = s->past[i][k];
+            }
+        }
+#endif
+    }
+#if PL_SEEDED
+    for (i = PL_OWN_INPUTS; i < PL_INPUTS; i++) {
+        b->u[i] = ds->du[PL(moved_input)[i]];
+    }
+#endif
+#endif
+    (void)b;
+    (void)s;
+    (void)ds;
+}
+
+/* The states are the model's where a series begins, so that the derivatives are of what it computes; what was set
+ * meanwhile begins anew. */
+static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
+{
+    real z[PL_STATES];
+    int i;
+    PL(both_states)(s, ds, z);
+    PL(take_samples)(b, s, ds);
+    if (!PL(is_left)(b, s, ds, z)) {
+        PL(set)(b, PL_OF(time)(s), z);
+        return;
+    }
+    for (i = 0; i < PL_STATES && PL_ENDED(b); i++) {
+        b->y[i] = PL(moved_column)[i] < 0 ? z[i] : b->y[i];
+    }
+}
+
+#if PL_INPUTS > 0
+static void PL(both_samples)(const real *u, const real *du, real both[PL_INPUTS])
+{
+    int i;
+    for (i = 0; i < PL_INPUTS; i++) {
+        both[i] = i < PL_OWN_INPUTS ? u[i] : du == NULL ? 0 : du[PL(moved_input)[i]];
+    }
+}
+#define PL_BOTH , both
+#else
+#define PL_BOTH
+#endif
+
+static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const real *u, const real *du)
+{
+    real z[PL_STATES];
+    int i;
+#if PL_INPUTS > 0
+    real both[PL_INPUTS];
+    PL(both_samples)(u, du, both);
+#endif
+    PL(follow)(b, s, ds);
+    PL(step)(b PL_BOTH);
+    PL(get)(b, z);
+    for (i = 0; i < PL_STATES; i++) {
+        if (PL(moved_column)[i] >= 0) {
+            ds->s[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
+        }
+    }
+    ds->status |= (unsigned)PL(status)(b);
+    (void)u;
+    (void)du;
+}
+
+#if PL_DECLARED
+static void PL(out_beside)(const PL_OF_TYPE *s, const PL_OF(d) *ds, const PL_TYPE *from,
+                           real J[PL_OWN_OUTPUTS][PL_DERIVATIVES])
+{
+    PL_TYPE b = *from;
+    real out[PL_OUTPUTS];
+    int i, p;
+    PL(follow)(&b, s, ds);
+    PL(out)(&b, out);
+    for (i = 0; i < PL_OWN_OUTPUTS; i++) {
+        for (p = 0; p < PL_MOVED; p++) {
+            J[i][PL_FROM + p] = out[PL_OWN_OUTPUTS * (p + 1) + i];
+        }
+    }
+}
+#endif
+
+#if PL_AT
+static void PL(at_beside)(const PL_OF_TYPE *s, const PL_OF(d) *ds, const PL_TYPE *from, const real *u, const real *du,
+                          real tau, real S[PL_DERIVATIVES][PL_OWN_STATES])
+{
+    PL_TYPE b = *from;
+    real z[PL_STATES];
+    int i;
+#if PL_INPUTS > 0
+    real both[PL_INPUTS];
+    PL(both_samples)(u, du, both);
+#endif
+    PL(follow)(&b, s, ds);
+    PL(at)(&b PL_BOTH, tau, z);
+    for (i = 0; i < PL_STATES; i++) {
+        if (PL(moved_column)[i] >= 0) {
+            S[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
+        }
+    }
+    (void)u;
+    (void)du;
+}
+#endif
+
+#include "undef.h"
