@@ -18,6 +18,7 @@
  *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
  *     PL_STATUS, PL_RANGES       1: member status; ranges of PL(range_state)[]: PL(range)[][2]
  *     PL_PLACES                  1: PL(place)(s) finds what follows from a state that was set
+ *     PL_MASSES                  of the state: with masses.h
  *     PL_OWN                     1: member coeffs, which begins as PL(nominal)
  * PL_RAMPS, PL_PAST_SAMPLES          1: members slope and PL(hold); of inputs through PL(past_samples)[] + 1 samples at
  * most, past
@@ -165,6 +166,10 @@ static inline void PL(pass_segments)(PL_TYPE *s)
 }
 #endif
 
+#if PL_INDEFINITE
+static void PL(begin_mass)(PL_TYPE *s);
+#endif
+
 /* ---- set ---- */
 
 /* What follows from t alone */
@@ -238,6 +243,9 @@ void PL(set)(PL_TYPE *s, real t, const real x[PL_STATES])
 #endif
 #if PL_PLACES
     PL(place)(s);
+#endif
+#if PL_INDEFINITE
+    PL(begin_mass)(s);
 #endif
 }
 
@@ -351,6 +359,10 @@ static void PL(stay)(PL_TYPE *s)
         }
     }
 }
+#endif
+
+#if PL_MASSES > 0
+#include "masses.h"
 #endif
 
 /* ---- samples ---- */

@@ -38,7 +38,8 @@
  *     PL(still)(x, forcing, sum)            once steady: [omega eta, eta'] after a step from those before
  *     PL(omega)[2][PL_WIDTH]             omega, 1 over it
  *     PL(until), PL(change)              of segments: time to each change, and the changes
- *     PL(pass_time)(s, u)                phases and time of a step */
+ *     PL(pass_time)(s, u)                phases and time of a step
+ *     PL(look)(s)                        at the state behind it: its ranges, its mass matrix */
 #include "numbers.h"
 
 #define PL_NODES (PL_STAGES + 1)
@@ -422,6 +423,7 @@ void PL(step)(PL_TYPE *s)
 #else
     PL(changing_step)(s);
 #endif
+    PL(look)(s);
     s->status |= pl_not_finite(s->eta, PL_WIDTH) | pl_not_finite(s->rate, PL_WIDTH);
 }
 

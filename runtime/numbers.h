@@ -119,6 +119,12 @@
 #ifndef PL_MOMENTA
 #define PL_MOMENTA 0
 #endif
+#ifndef PL_INDEFINITE
+#define PL_INDEFINITE 0
+#endif
+#ifndef PL_MASSES
+#define PL_MASSES 0
+#endif
 #ifndef PL_NORMAL
 #define PL_NORMAL 0
 #endif
@@ -154,6 +160,9 @@
 #endif
 #ifndef PL_ROWS
 #define PL_ROWS 0
+#endif
+#ifndef PL_SAMPLED
+#define PL_SAMPLED 0
 #endif
 #ifndef PL_SEGMENTS
 #define PL_SEGMENTS 1

@@ -105,10 +105,12 @@
 #undef PL_H
 #undef PL_HALVINGS
 #undef PL_HAS
+#undef PL_FAILS
 #undef PL_HERE
 #undef PL_HIDDEN
 #undef PL_HUGE
 #undef PL_IMPACTS
+#undef PL_INDEFINITE
 #undef PL_INPUTS
 #undef PL_IN_MODES
 #undef PL_INSIDE
@@ -201,6 +203,7 @@
 #undef PL_SAMPLES
 #undef PL_SEARCH
 #undef PL_SEGMENT
+#undef PL_SAMPLED
 #undef PL_SEGMENTS
 #undef PL_SELECTOR
 #undef PL_SERVES

@@ -100,6 +100,9 @@ void emit_access(const struct emitter *e)
 		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "REFRESHED", step->refresh != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
+		   { "MASSES", moving_masses(e) }, { "INDEFINITE", may_be_singular(e) },
+		   { "SAMPLED", may_be_singular(e) && !tells_tolerance(e) },
+		   { "FAILS", steps_may_fail(e) },
 		   { "OWN", e->model->params.held || e->step->is.tuned }, { "RAMPS", e->ramps },
 		   { "PAST_SAMPLES", most_samples_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));

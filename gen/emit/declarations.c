@@ -58,6 +58,7 @@ static void emit_state_struct(const struct emitter *e)
 	       "    uint64_t k;           /* steps since then */\n");
 	emit_if_any(e->prints->members, e);
 	emit_peak_members(e);
+	emit_mass_members(e);
 	if (keeps_status(e))
 		say(e, "    int status;           /* 0 or PL_... bits of plrt.h, which stay until init or set */\n");
 	say(e, "};\n\n");

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the constraints miss, and mass matrices of the state, for the runtime's constraints.h. */
+/* What the constraints miss, for the runtime's constraints.h, and mass matrices of the state, for its masses.h. */
 #include "steps.h"
 #include "model/building.h"
 #include "model/reads.h"
+#include "model/state_mass.h"
 
 #include <math.h>
 
@@ -40,7 +41,7 @@ static void emit_misses(const struct emitter *e)
 	close_function(e, "s tau y");
 }
 
-/* ---- M of the state, which is looked at where a step fails ---- */
+/* ---- M of the state, which is looked at where a step fails or may pass a singular place ---- */
 
 static const struct form **entries(const struct segment_equations *s, int *count)
 {
@@ -67,6 +68,17 @@ int moving_masses(const struct emitter *e)
 	return any_of(r.input, 2 * e->system->inputs) ? 0 : rows;
 }
 
+/* Whether nothing shows that it stays regular */
+bool may_be_singular(const struct emitter *e)
+{
+	return moving_masses(e) > 0 && e->model->equations.indefinite;
+}
+
+bool steps_may_fail(const struct emitter *e)
+{
+	return e->step->taylor.expansion || e->step->collocation;
+}
+
 static struct formulas *mass_entries(const struct emitter *e)
 {
 	const struct segment_equations *s = e->model->equations.full;
@@ -81,20 +93,39 @@ static struct formulas *mass_entries(const struct emitter *e)
 	return f;
 }
 
-static void emit_masses_at_start(const struct emitter *e, int rows)
+/* Per state the one that is its slope; -1: none is */
+static int *rates_of_states(const struct emitter *e)
+{
+	int *rate = ARRAY(int, e->system->states);
+	for (int i = 0; i < e->system->states; i++)
+		rate[i] = i < e->system->n ? e->system->velocity[i] : -1;
+	return rate;
+}
+
+static void emit_mass_tables(const struct emitter *e, int rows)
 {
 	const struct segment_equations *s = e->model->equations.full;
 	double *value = ARRAY(double, rows);
-	int row = 0;
-	for (int b = 0; b < s->masses; b++)
-		for (int n = s->mass[b].system.n, i = 0; i < n; i++)
+	int *block = ARRAY(int, rows), row = 0;
+	for (int b = 0; b < s->masses; b++) {
+		const int n = s->mass[b].system.n;
+		for (int i = 0; i < n; i++)
 			value[row++] = fabs(finite_number(e, s->mass[b].start[i * n + i]));
+		block[row - 1] = is_symmetric_mass(&s->mass[b].system) ? 1 : 2;
+	}
 	emit_array(e, "Sizes of the diagonal of the mass matrix at the start", "mass_at_start", 1, &rows, value, NULL);
+	if (!may_be_singular(e))
+		return;
+	emit_int_list(e, "mass_block", rows, block);
+	emit_int_list(e, "rate_of", e->system->states, rates_of_states(e));
 }
 
-static void emit_masses(const struct emitter *e, int rows)
+void emit_mass_matrix(const struct emitter *e)
 {
-	emit_masses_at_start(e, rows);
+	const int rows = moving_masses(e);
+	if (rows == 0)
+		return;
+	emit_mass_tables(e, rows);
 	struct formulas *f = mass_entries(e);
 	const struct reads r = reads_of_formulas(f);
 	open_function(e, "Entries of the mass matrix that are not 0, at y, tau after now",
@@ -105,13 +136,20 @@ static void emit_masses(const struct emitter *e, int rows)
 		say(e, "    const double t = $n_time(s) + tau;\n");
 	emit_formulas(f, 4);
 	close_function(e, "s tau y");
+	if (may_be_singular(e))
+		say(e, "\nstatic void $n_stay_regular($n *s);\n");
+}
+
+void emit_mass_members(const struct emitter *e)
+{
+	if (may_be_singular(e))
+		say(e, "    double pivot[%d];%*s/* of the mass matrix now: their signs say if it turns singular */\n"
+		       "    double regular[$N_STATES];  /* the last state at which it was not */\n",
+		    moving_masses(e), moving_masses(e) < 10 ? 6 : 5, "");
 }
 
 void emit_constraints(const struct emitter *e)
 {
-	const int rows = moving_masses(e);
 	if (corrections(e))
 		emit_misses(e);
-	if (rows)
-		emit_masses(e, rows);
 }

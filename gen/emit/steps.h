@@ -41,7 +41,9 @@ void emit_step(const struct emitter *e);
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
-void emit_step_end(const struct emitter *e);                      /* samples, phases and time move on */
+void emit_step_advance(const struct emitter *e);                  /* samples, phases and time move on */
+const char *checks_of_step(const struct emitter *e);              /* what is looked at in the state behind it */
+void emit_step_end(const struct emitter *e);                      /* both */
 const char *head_of_step(const struct emitter *e);
 
 /* ---- emit_delays.c: delayed inputs, around a model that has them as inputs ---- */
@@ -65,6 +67,10 @@ bool rhs_needs_math(const struct emitter *e);
 /* ---- emit_constraints.c ---- */
 
 void emit_constraints(const struct emitter *e);                   /* NAME_misses, NAME_masses, where there are some */
+void emit_mass_matrix(const struct emitter *e);                  /* NAME_masses, where it moves */
+void emit_mass_members(const struct emitter *e);
+bool steps_may_fail(const struct emitter *e);                     /* and say why */
+bool may_be_singular(const struct emitter *e);
 int  moving_masses(const struct emitter *e);                      /* rows of the latter; 0: there is none */
 bool constraints_need_math(const struct emitter *e);
 

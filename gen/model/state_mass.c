@@ -424,6 +424,8 @@ void check_mass_at_start(struct building *b)
 	struct starting work = { .b = b };
 	work.start = point_new(&b->collector, jacobian_point(&j, fixing), fixing);
 	point_at_values(work.start);
+	/* M of energies that are never below 0 has no negative pivot, G M^-1 G^T of constraints no positive one. */
+	b->model->equations.indefinite = b->full->masses > 0 && (b->spec->equations > 0 || b->full->negative_kinetic);
 	for (int i = 0; i < b->full->masses && !diagnostics_errors(); i++) {
 		work.mass = &b->full->mass[i];
 		statement_guard(check_mass_of, &work);
@@ -455,14 +457,21 @@ bool has_moving_mass(const struct segment_equations *s, int coord)
 	return system_of_coord(s, coord, &row) != NULL;
 }
 
+bool is_symmetric_mass(const struct linear_system *e)
+{
+	bool symmetric = true;
+	for (int j = 0; j < e->n * e->n; j++)
+		symmetric = symmetric && same_form(e->M[j], e->M[j % e->n * e->n + j / e->n]);
+	return symmetric;
+}
+
 const char *unsymmetric_mass(const struct building *b, const struct form *const *force)
 {
 	int row;
 	for (int k = 0; k < b->model->n; k++) {
 		const struct linear_system *e = system_of_coord(b->full, k, &row);
-		for (int j = 0; e && force[k]->terms && j < e->n * e->n; j++)
-			if (!same_form(e->M[j], e->M[j % e->n * e->n + j / e->n]))
-				return b->model->names.coord[k];
+		if (e && force[k]->terms && !is_symmetric_mass(e))
+			return b->model->names.coord[k];
 	}
 	return NULL;
 }

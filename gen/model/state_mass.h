@@ -8,6 +8,7 @@
 
 struct building;
 struct form;
+struct linear_system;
 struct segment_equations;
 
 /* Whether the highest derivative of a coordinate stands in it, or inside of an atom */
@@ -22,6 +23,7 @@ struct energy;
 int  negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic);
 void report_negative_mass(const struct building *b, const struct energy *kinetic, int coord);
 void check_mass_at_start(struct building *b);               /* that M is regular there */
+bool is_symmetric_mass(const struct linear_system *e);
 /* Whether the equation of its highest derivative has a factor of the state */
 bool has_moving_mass(const struct segment_equations *s, int coord);
 /* The first coordinate on whose equation a force acts and whose mass matrix is not symmetric; NULL: there is none.

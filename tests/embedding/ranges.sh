@@ -185,6 +185,8 @@ scheme taylor 6 over 3
 range x in [-0.6, 1.1]
 EOF
 looks 'a series over several steps' 0 -0.6 1.1
+sed -i '/^scheme/s/.*/scheme etdam4/' one.spec
+looks 'forces of past steps' 0 -0.6 1.1
 spec <<'EOF'
 coord x
 init x = 1

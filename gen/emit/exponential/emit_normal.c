@@ -320,6 +320,18 @@ void emit_mode_tables(const struct emitter *e)
 	emit_forces_ahead(e);
 }
 
+/* Time moves on before forces at the end of a step are known, and so before there is a state to look at. */
+static void emit_advance(const struct emitter *e)
+{
+	open_function(e, "Advances time and loads by a step",
+		      "static inline void $n_pass_time($n *s, const double u[])");
+	emit_step_advance(e);
+	close_function(e, "u");
+	open_function(e, "Looks at the state at the end of a step", "static inline void $n_look($n *s)");
+	say(e, "%s", checks_of_step(e));
+	close_function(e, "s");
+}
+
 static void emit_algorithm(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
@@ -352,7 +364,7 @@ void emit_normal_tables(const struct emitter *e)
 		emit_forces_ahead(e);
 	if (m->steady.flow)
 		emit_still(e);
-	emit_pass_time(e);
+	emit_advance(e);
 	if (e->step->series.emitted)
 		emit_within(e);
 	emit_algorithm(e);

@@ -150,7 +150,7 @@ static void emit_plain_step(const struct emitter *e)
 	emit_looped_step(e);
 }
 
-void emit_step_end(const struct emitter *e)
+void emit_step_advance(const struct emitter *e)
 {
 	emit_keep_inputs(e, 1);
 	if (!e->step->refresh)
@@ -161,8 +161,18 @@ void emit_step_end(const struct emitter *e)
 		    e->step->refresh->steps);
 	if (e->step->linear.flush && e->step->linear.flush->in_step)
 		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
-	if (has_ranges(e))
-		say(e, "    $n_stay(s);\n");
+}
+
+const char *checks_of_step(const struct emitter *e)
+{
+	return format("%s%s", has_ranges(e) ? spell(e, "    $n_stay(s);\n") : "",
+		      may_be_singular(e) ? spell(e, "    $n_stay_regular(s);\n") : "");
+}
+
+void emit_step_end(const struct emitter *e)
+{
+	emit_step_advance(e);
+	say(e, "%s", checks_of_step(e));
 }
 
 const char *step_parameters(const struct emitter *e)
