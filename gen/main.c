@@ -371,6 +371,8 @@ static bool find_rows(struct work *w)
 static bool print_text(struct work *w)
 {
 	measure_board(w);
+	if (w->options.print == PRINT_C && !find_replayed(w->step))
+		return false;
 	w->text = w->options.fmu ? file_inside() : file_new(w->options.output);
 	bool printed = statement_guard(print_main_text, w);
 	file_close(w->text);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* selftest.h: a step on this target beside states in closed form: a wrong constant anywhere in NAME_step, NAME_jump,
- * NAME_at or in the state that NAME_init leaves shows as a deviation.  Included by the file of the model, which defines
- * before it
+/* selftest.h: a step on this target beside states in closed form, or where there is none beside those that the same
+ * steps came to where the file was made: a wrong constant anywhere in NAME_step, NAME_jump, NAME_at or in the state
+ * that NAME_init leaves shows as a deviation.  Included by the file of the model, which defines before it
  *
  *     PL(name), PL_SINGLE, PL_TYPE, PL_H     the prefix of the model before a name; 1: in float; the model; step [s]
  *     PL_STATES, PL_INPUTS       the states; the inputs that a step is given
@@ -9,7 +9,7 @@
  *     PL_JUMPS, PL_AT            whether there is NAME_jump; NAME_at
  *
  *     PL(known_steps)[PL_ROWS]   after so many steps each
- *     PL(known)[PL_ROWS][PL_STATES], PL(known_between)[PL_STATES]   those states; at h/2
+ *     PL(known_states)[PL_ROWS][PL_STATES], PL(known_between)[PL_STATES]   those states; at h/2
  *     PL(known_initial)[], PL(known_start)[]   what NAME_init sets; the start of the states that are known
  *     PL(known_unit)[]           one in the last place of the largest value that each state takes
  *     PL(known_crossing_step)[], PL(known_crossing)[][2]   per crossing the steps before it; how long after them, and
@@ -85,7 +85,7 @@ static real PL(replayed)(PL_TYPE *s, real worst)
 #endif
         }
         PL(get)(s, y);
-        worst = PL(deviation)(y, PL(known)[i], worst);
+        worst = PL(deviation)(y, PL(known_states)[i], worst);
     }
 #if PL_CROSSED > 0
     if (found != PL_CROSSED) {
@@ -96,7 +96,7 @@ static real PL(replayed)(PL_TYPE *s, real worst)
     PL(set)(s, 0, PL(known_start));
     PL(jump)(s, PL(known_steps)[PL_ROWS - 1]);
     PL(get)(s, y);
-    worst = PL(deviation)(y, PL(known)[PL_ROWS - 1], worst);
+    worst = PL(deviation)(y, PL(known_states)[PL_ROWS - 1], worst);
 #endif
 #if PL_AT
     PL(begin_again)(s);

@@ -121,9 +121,16 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	if (rhs)
 		announce(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
 				 given_inputs(e) ? "const double u[], " : ""), note);
+	if (!e->model->delays)
+		declare_selftest(e);
+}
+
+void declare_selftest(const struct emitter *e)
+{
 	if (e->model->request.selftest)
 		announce(e, spell(e, "double $n_selftest(void);"),
-			"largest deviation from the closed form, in units in the last place");
+			 format("largest deviation from %s, in units in the last place", e->step->replayed
+				? "the same steps where this was made" : "the closed form"));
 }
 
 void declare_model(const struct emitter *e)

@@ -22,6 +22,7 @@ const char **names_of_inputs(const struct emitter *e);
 void emit_names_of(const struct emitter *e, const char *kind, const char *const *name, int count);
 void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */
 void declare_model(const struct emitter *e);               /* the descriptor, and units where there are some */
+void declare_selftest(const struct emitter *e);            /* where it is asked for */
 void announce(const struct emitter *e, const char *text, const char *comment);     /* one declaration */
 /* guard: GUARD_DECLARED, which keeps them from being read twice */
 void open_declarations(const struct emitter *e, const char *guard, const char *included);

@@ -196,7 +196,7 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		emit_jump(e);
 	if (e->model->request.batch && !e->model->delays)
 		emit_batch(e);
-	if (e->model->request.selftest)
+	if (e->model->request.selftest && !e->model->delays)
 		emit_selftest(e, has_jump(e));
 	if (rhs)
 		emit_rhs(e);

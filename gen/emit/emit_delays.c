@@ -81,6 +81,7 @@ void emit_delay_declarations(const struct emitter *core)
 		declare_params(e);
 	if (e->model->request.batch)
 		emit_batch_declarations(e);
+	declare_selftest(e);
 	declare_model(e);
 	close_declarations(e);
 }
@@ -139,6 +140,8 @@ void emit_delays(const struct emitter *core)
 	emit_samples_of_core(e);
 	if (e->model->request.batch)
 		emit_batch(e);
+	if (e->model->request.selftest)
+		emit_selftest(e, false);
 	say(e, "\n");
 	emit_model(e, delays_of(e)->inputs, false);
 }

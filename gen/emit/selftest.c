@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* NAME_selftest: states in closed form, for the target to step to, by selftest.h. Inputs follow u = 1 - t/h, which
+/* NAME_selftest: states in closed form, or that the same steps come to where there is none, for the target to step
+ * to, by selftest.h. Inputs follow u = 1 - t/h, which
  * every factor of a sample has a part in; held, u = 1. */
 #include "declarations.h"
 #include "emit/tunable/tunable.h"
@@ -38,10 +39,10 @@ static void emit_tables(const struct emitter *e, const struct reference *r)
 	const struct model *written = e->model->relative ? e->model->written : e->model;
 	double *initial = ARRAY(double, (size_t)r->states);
 	for (int i = 0; i < r->states; i++)
-		initial[i] = round_rational(written->initial[i]);
+		initial[i] = e->step->replayed ? r->start[i] : round_rational(written->initial[i]);
 	emit_table(e, "The spec's initial values", "known_initial", 0, r->states, initial);
-	emit_table(e, "Where the states begin that are known in closed form", "known_start", 0, r->states, r->start);
-	emit_table(e, "Those after so many steps", "known", r->rows, r->states, r->value);
+	emit_table(e, "Where the states begin that are known", "known_start", 0, r->states, r->start);
+	emit_table(e, "Those after so many steps", "known_states", r->rows, r->states, r->value);
 	emit_step_counts(e, "known_steps", r->rows, r->steps);
 	if (e->step->series.emitted)
 		emit_table(e, "At h/2", "known_between", 0, r->states, r->between);
@@ -51,10 +52,16 @@ static void emit_tables(const struct emitter *e, const struct reference *r)
 		emit_crossings(e, r);
 }
 
+/* That a step is given: samples of delayed inputs are kept */
+static int inputs_of_step(const struct emitter *e)
+{
+	return e->model->delays ? e->model->delays->inputs : given_inputs(e);
+}
+
 static void emit_sample(const struct emitter *e)
 {
 	open_function(e, NULL, "static void $n_known_sample(double ramp, double u[$N_INPUTS])");
-	for (int i = 0; i < given_inputs(e); i++)
+	for (int i = 0; i < inputs_of_step(e); i++)
 		say(e, "    u[%d] = %s;\n", i, e->system->input[i].hold ? "ramp" : "1.0");
 	close_function(e, e->ramps ? "" : "ramp");
 }
@@ -64,7 +71,10 @@ static void emit_begin(const struct emitter *e)
 	open_function(e, NULL, "static void $n_begin_again($n *s)");
 	if (e->ramps)
 		say(e, "    double u[$N_INPUTS];\n");
-	emit_nominal_factors(e);
+	if (e->step->replayed)
+		say(e, "    $n_init(s);\n");
+	else
+		emit_nominal_factors(e);
 	say(e, "    $n_set(s, 0.0, $n_known_start);\n");
 	if (e->ramps)
 		say(e, "    $n_known_sample(1.0, u);\n"
@@ -74,12 +84,12 @@ static void emit_begin(const struct emitter *e)
 
 void emit_selftest(const struct emitter *e, bool jumps)
 {
-	const struct reference r = reference_of(e->step->shown);
+	const struct reference r = e->step->replayed ? *e->step->replayed : reference_of(e->step->shown);
 	emit_tables(e, &r);
-	if (given_inputs(e))
+	if (inputs_of_step(e))
 		emit_sample(e);
 	emit_begin(e);
-	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", given_inputs(e) }, { "ROWS", r.rows },
+	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", inputs_of_step(e) }, { "ROWS", r.rows },
 		   { "CROSSED", r.crossings },
 		   { "JUMPS", jumps }, { "AT", e->step->series.emitted });
 	if (r.crossings)

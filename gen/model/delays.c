@@ -89,7 +89,6 @@ static void check_request(const struct building *b, const struct symbol *s)
 {
 	const struct facts facts = { .delays = true };
 	const bool requested[CAPABILITIES] = { [CAN_SOLUTION] = b->request->solution,
-					   [CAN_SELFTEST] = b->request->selftest,
 					   [CAN_NEED] = b->spec->required.needs > 0 };
 	for (int k = 0; k < CAPABILITIES; k++)
 		if (requested[k])

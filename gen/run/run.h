@@ -39,6 +39,7 @@ struct counted running_counted(const struct running *r);     /* of all instances
 void   running_start(struct running *r, double t, const double *y);  /* any state; y NULL: the spec's, at 0 */
 void   running_step(struct running *r, const double *u);     /* by h */
 void   running_state(struct running *r, double *y);
+bool   running_at(struct running *r, const double *u, double tau, double *y);   /* false: there is no NAME_at */
 double running_time(struct running *r);
 void   running_outputs(struct running *r, double *out);
 void   running_needed(struct running *r, double *value);     /* per need: its output */
@@ -94,6 +95,11 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 double apart(const struct course *a, const struct course *b, int need);
 double largest_of(const struct course *a, int need);
 void course_free(struct course *course);
+
+/* ---- replay.c: states for the self-test ---- */
+
+/* step->replayed, where the self-test has no closed form; false: it was said why there is none */
+bool find_replayed(struct step *step);
 
 /* ---- exact.c: closed forms of a linear model ---- */
 

@@ -128,6 +128,19 @@ void running_needed(struct running *r, double *value)
 	}
 }
 
+bool running_at(struct running *r, const double *u, double tau, double *y)
+{
+	if (CALL(r, at == NULL))
+		return false;
+	to_target(r, u, r->u, r->inputs);
+	if (r->single)
+		((const pl_modelf *)r->native.model)->at(r->instance, r->u, (float)tau, r->y);
+	else
+		((const pl_model *)r->native.model)->at(r->instance, r->u, tau, r->y);
+	from_target(r, r->y, y, r->states);
+	return true;
+}
+
 double running_time(struct running *r)
 {
 	return CALL(r, time(r->instance));

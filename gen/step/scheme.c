@@ -368,8 +368,6 @@ static void build(void *context)
 	check_step_form(step);
 	check_refresh(step);
 	build_flow(step);
-	if (model->request.selftest)
-		refuse(CAN_SELFTEST, model, (struct place){ source_argument("--selftest"), 0 });
 	if (step->is.many)
 		step->no.lanes = step_objection(step, CAN_LANES);
 	check_peaks(step);

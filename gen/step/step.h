@@ -24,6 +24,7 @@ struct modal;
 struct normal;
 struct denormal_flush;
 struct derivatives;
+struct reference;
 struct rows;
 struct tuned_blocks;
 
@@ -100,6 +101,7 @@ struct step {                       /* everything that is emitted for one model 
 	struct event_split *event_split; /* of a step of this kind; else NULL */
 	struct collocation *collocation; /* of a collocated step; else NULL */
 	struct normal *normal;      /* of a step in normal modes; else NULL */
+	const struct reference *replayed; /* what its own steps come to, for the self-test; NULL: a closed form does */
 	struct derivatives *derivatives; /* by params and the like; NULL: none are asked for */
 	struct rows *rows;          /* NAME_run in blocks of rows; NULL: step by step */
 };

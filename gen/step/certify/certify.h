@@ -86,8 +86,9 @@ void trajectory_value(const struct trajectory *t, const struct output *output, m
 int  trajectory_passed(const struct trajectory *t, const struct passed **list); /* so far, in order */
 void trajectory_free(struct trajectory *t);
 
-/* ---- closed.c: states in closed form for the self-test ---- */
+/* ---- passing.c, closed.c: states that the self-test compares with ---- */
 
+enum { REFERENCE_ROWS = 11 };
 struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
 	int states, rows;           /* rows: fewer where the states leave the range */
 	const unsigned long *steps; /* per row: how many have been taken */
@@ -98,6 +99,9 @@ struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h;
 	int crossings;
 	struct { unsigned long step; double after, unit; } *crossing;  /* steps before it, and [s] */
 };
-struct reference reference_of(const struct step *step);
+void reference_units(struct reference *r, bool single);
+bool has_closed_form(const struct step *step);
+struct reference new_reference(int states);                 /* room for its rows */
+struct reference reference_of(const struct step *step);     /* in closed form */
 
 #endif

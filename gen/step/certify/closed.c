@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* States of a linear model in closed form, for the target's self-test to step to. */
+/* States for the target's self-test to step to: of a linear model in closed form. */
 #include "inner.h"
 #include "step/linear/images.h"
 
 #include <math.h>
 
-static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100 };
-enum { ROWS = sizeof steps / sizeof steps[0] };
+enum { LINEAR_ROWS = 8 };           /* which leave no constant of a linear step out */
 
 struct closed_form {                /* of one state */
 	int count;
@@ -56,8 +55,8 @@ static bool fill_row(const struct step *step, const struct closed_form *form, mp
 static void fill_rows(const struct step *step, const struct closed_form *form, struct reference *r)
 {
 	RATIONAL t = ZERO;
-	for (r->rows = 0; r->rows < ROWS; r->rows++) {
-		mpq_set_ui(t, steps[r->rows], 1);
+	for (r->rows = 0; r->rows < LINEAR_ROWS; r->rows++) {
+		mpq_set_ui(t, r->steps[r->rows], 1);
 		mpq_mul(t, t, step->model->h);
 		if (!fill_row(step, form, t, r->value + r->rows * r->states))
 			break;                  /* what grows leaves the range: shorter */
@@ -67,7 +66,7 @@ static void fill_rows(const struct step *step, const struct closed_form *form, s
 		fill_row(step, form, t, r->between);
 }
 
-static void fill_units(struct reference *r, bool single)
+void reference_units(struct reference *r, bool single)
 {
 	for (int i = 0; i < r->states; i++) {
 		double largest = fabs(r->start[i]);
@@ -77,12 +76,18 @@ static void fill_units(struct reference *r, bool single)
 	}
 }
 
+bool has_closed_form(const struct step *step)
+{
+	return step->is.flow == FLOW_LINEAR && steps_exactly(step->model) && !step->model->delays &&
+	       !further_samples(&step->model->system);
+}
+
 struct reference reference_of(const struct step *step)
 {
 	if (step->model->switching)
 		return reference_of_trajectory(step);
-	struct reference r = new_reference(step);
+	struct reference r = new_reference(step->branch->system.states);
 	fill_rows(step, closed_forms(step, &r), &r);
-	fill_units(&r, step->model->request.single);
+	reference_units(&r, step->model->request.single);
 	return r;
 }

@@ -49,7 +49,6 @@ void trajectory_limit(struct trajectory *t, int most);      /* crossings; what c
 
 double ulp_of(double value, bool single);
 void reference_start(int state, mpq_ptr value);              /* a start that has nothing special */
-struct reference new_reference(const struct step *step);    /* room for its rows */
 struct reference reference_of_trajectory(const struct step *step); /* leaves the statement where nothing is known */
 
 #endif

@@ -10,9 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const unsigned long steps[] = { 1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000 };
 enum {
-	ROWS = sizeof steps / sizeof steps[0],
 	LEAST_ROWS = 8,             /* without a crossing */
 	ENOUGH = 5, MANY = 40,      /* crossings */
 	STARTS = 13,
@@ -298,10 +296,10 @@ static bool try_start(const struct step *step, struct reference *r, const mpq_t 
 	for (int i = 0; i < r->states; i++)
 		r->start[i] = round_rational(start[i]);
 	known = !reach(&a, time) && states_of(&a, r->between, unused);
-	while (known && goes && r->rows < ROWS &&
+	while (known && goes && r->rows < REFERENCE_ROWS &&
 	       (r->crossings < ENOUGH || (r->rows < LEAST_ROWS && r->crossings < MANY))) {
 		double *y = r->value + r->rows * r->states;
-		mpq_set_ui(time, steps[r->rows], 1);
+		mpq_set_ui(time, r->steps[r->rows], 1);
 		mpq_mul(time, time, step->model->h);
 		goes = !reach(&a, time);
 		known = goes ? states_of(&a, y, width) : crossings_of(&a) >= MOST;
@@ -327,15 +325,14 @@ static void fill_units(struct reference *r, bool single)
 	}
 }
 
-struct reference new_reference(const struct step *step)
+static const unsigned long steps[REFERENCE_ROWS] = { 1, 2, 3, 5, 10, 20, 50, 100, 200, 500, 1000 };
+
+struct reference new_reference(int states)
 {
-	size_t states = (size_t)step->branch->system.states;
-	struct reference r = { .states = (int)states, .steps = steps };
-	r.start = ARRAY(double, states);
-	r.value = ARRAY(double, states * ROWS);
-	r.between = ARRAY(double, states);
-	r.unit = ARRAY(double, states);
-	return r;
+	const size_t n = (size_t)states;
+	return (struct reference){ .states = states, .steps = steps, .start = ARRAY(double, n),
+				   .value = ARRAY(double, n * REFERENCE_ROWS), .between = ARRAY(double, n),
+				   .unit = ARRAY(double, n) };
 }
 
 struct reference reference_of_trajectory(const struct step *step)
@@ -343,7 +340,7 @@ struct reference reference_of_trajectory(const struct step *step)
 	struct reference best = { 0 };
 	mpq_t *start = rationals(step->branch->system.states);
 	for (int number = 0; number < STARTS && best.crossings < ENOUGH; number++) {
-		struct reference r = new_reference(step);
+		struct reference r = new_reference(step->branch->system.states);
 		start_of(step, number, start);
 		for (int bits = FEWEST_BITS; !try_start(step, &r, start, bits) && bits < MOST_BITS;)
 			bits *= 2;
@@ -353,7 +350,7 @@ struct reference reference_of_trajectory(const struct step *step)
 	if (best.crossings == 0)
 		error((struct place){ source_argument("--selftest"), 0 }, NULL,
 		      "--selftest finds no start from which a breakpoint is passed in %lu steps, apart from others and "
-		      "clearly", steps[ROWS - 1]);
+		      "clearly", best.steps[REFERENCE_ROWS - 1]);
 	fill_units(&best, step->model->request.single);
 	return best;
 }
