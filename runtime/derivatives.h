@@ -6,8 +6,10 @@
  *     PL_SEEDED                  1: some are along inputs: the last du is in ds->du, with slopes in ds->slope
  *     PL_SLOPED                  1: it is
  *     PL_BESIDE                  1: models of their own go beside it: members left, time, PL(init_beside)(ds)
+ *     PL_BY_PHI                  1: PL(Phi) is what every step does to the state
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
+ *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
  *     PL(d_by)[][]               of each column what pl_derivatives says
  *     PL(step_d), PL(out_d)      a step of both; derivatives of outputs */
 #include "numbers.h"
@@ -104,6 +106,8 @@ void PL(run_d)(PL_TYPE *s, PL(d) *ds, size_t n
     }
 }
 
+#include "back.h"
+
 /* ---- for programs ---- */
 
 static void PL(any_init_d)(void *s, void *ds)
@@ -142,7 +146,7 @@ const pl_derivatives PL(derivatives) = {
 #else
     NULL,
 #endif
-    PL(any_status_d), PL(d_by)
+    PL(any_status_d), PL(d_by), PL(any_gradient)
 };
 
 #include "undef.h"

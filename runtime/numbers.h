@@ -53,6 +53,9 @@
 #ifndef PL_SLOPED
 #define PL_SLOPED 0
 #endif
+#ifndef PL_BY_PHI
+#define PL_BY_PHI 0
+#endif
 #ifndef PL_DERIVED
 #define PL_DERIVED 0
 #endif

@@ -607,4 +607,7 @@ typedef struct pl_derivatives {
     unsigned (*status)(const void *ds);
     /* Of a column by a param its value, in SI units, one of its own unit in them, and its range; 0, 0: it has none */
     const PL_REAL (*by)[4];
+    /* NAME_gradient; w, ub may be NULL */
+    size_t (*gradient)(const void *s, void *ds, size_t n, const PL_REAL *u, const PL_REAL *w, PL_REAL *lam,
+                       PL_REAL *pb, PL_REAL *ub, void *snapshot, size_t snapshots);
 } pl_derivatives;

@@ -343,6 +343,7 @@ enum {
 
 /* ---- types that the functions for double and for float share --------------------------------------------------- */
 
+enum { PL_SNAPSHOTS = 64 }; /* as many as NAME_gradient uses */
 enum { PL_ACCUMULATE_ADD = 11 };
 enum { PL_PEAK_SPACE = 6 };
 

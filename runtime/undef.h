@@ -64,6 +64,10 @@
 #undef PL_DERIVATIVES
 #undef PL_DIRECT
 #undef PL_SEEDED
+#undef PL_BY_PHI
+#undef PL_TAKES
+#undef PL_GIVES
+#undef PL_ALONG
 #undef PL_SLOPED
 #undef PL_SWITCHING_TABLES
 #undef PL_DRIVEN

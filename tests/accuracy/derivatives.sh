@@ -119,4 +119,114 @@ while read -r name; do
 		cut -d , -f "1-$(head -n 1 plain.csv | tr , '\n' | wc -l)" rows.csv | cmp - plain.csv >>log
 	result $? "$name: its outputs are those without derivatives"
 done <names
+# ---- backwards: the derivatives of a cost of random weights, against the same of the derivatives forwards ----
+
+cat >back.c <<'END'
+#include "plrt.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+extern const pl_model M(_model);
+extern const pl_derivatives M(_derivatives);
+enum { ROWS = 150, SLOTS = 6 };
+static double noise(void) { static unsigned s = 12345; s = s * 69069u + 12345u; return s / 4294967296.0 - 0.5; }
+static double *room(int count) { return calloc((size_t)count + 1, sizeof(double)); }
+
+/* the cost after a run of the model alone */
+static double cost(const pl_model *m, const double *u, const double *w, const double *end)
+{
+	double *out = room(m->outputs), *y = room(m->states), sum = 0;
+	void *s = calloc(1, m->size);
+	m->init(s);
+	for (int k = 0; k < ROWS; k++) {
+		m->step(s, u + k * m->inputs);
+		m->out(s, out);
+		for (int i = 0; i < m->outputs; i++) sum += w[k * m->outputs + i] * out[i];
+	}
+	m->get(s, y);
+	for (int i = 0; i < m->states; i++) sum += end[i] * y[i];
+	return sum;
+}
+
+int main(void)
+{
+	const pl_model *m = &M(_model);
+	const pl_derivatives *d = &M(_derivatives);
+	const int n = m->states, P = d->columns;
+	double *u = room(ROWS * m->inputs), *ub = room(ROWS * m->inputs), *w = room(ROWS * m->outputs), *end = room(n);
+	double *ones = room(m->inputs), *pb = room(P), *forward = room(P), *size = room(P), *J = room(m->outputs * P);
+	void *s = calloc(1, m->size), *ds = calloc(1, d->size), *slot = calloc(SLOTS, m->size);
+	int bad = 0, along = 0;
+	for (int i = 0; i < ROWS * m->inputs; i++) u[i] = noise();
+	for (int i = 0; i < ROWS * m->outputs; i++) w[i] = noise();
+	for (int i = 0; i < n; i++) end[i] = noise();
+	for (int i = 0; i < m->inputs; i++) ones[i] = 1;
+	d->init(s, ds);
+	if (d->hold) d->hold(ds, ones);
+	for (int k = 0; k < ROWS; k++) {
+		d->step(s, ds, u + k * m->inputs, ones);
+		d->out(s, ds, J);
+		for (int p = 0; p < P; p++)
+			for (int i = 0; i < m->outputs; i++) {
+				const double term = w[k * m->outputs + i] * J[i * P + p];
+				forward[p] += term;
+				size[p] += fabs(term);
+			}
+	}
+	for (int p = 0; p < P; p++)     /* NAME_d begins with its columns */
+		for (int i = 0; i < n; i++) forward[p] += end[i] * ((double *)ds)[p * n + i];
+	double *lam = room(n);
+	for (int i = 0; i < n; i++) lam[i] = end[i];
+	d->init(s, ds);
+	if (d->hold) d->hold(ds, ones);
+	const size_t steps = d->gradient(s, ds, ROWS, u, w, lam, pb, ub, slot, SLOTS);
+	for (int p = 0; p < P; p++) {
+		printf("%s: forwards %.17g, backwards %.17g\n", d->names[p], forward[p], pb[p]);
+		bad = bad || !(fabs(pb[p] - forward[p]) <= 1e-12 * size[p]);
+		for (int i = 0; i < m->inputs; i++) along += strcmp(d->names[p], m->input_names[i]) == 0;
+	}
+	/* r n - C(c + r, r - 1) of n = 150 and c = 6: r = 4 */
+	printf("%zu steps between snapshots, of 600 - 120\n", steps);
+	bad = bad || steps != 480;
+	for (int k = 0; k < ROWS && along; k += 31)     /* a linear cost: its difference is its derivative */
+		for (int i = 0; i < m->inputs; i++) {
+			double *at = &u[k * m->inputs + i], before = *at, up, down;
+			*at = before + 4;
+			up = cost(m, u, w, end);
+			*at = before - 4;
+			down = cost(m, u, w, end);
+			*at = before;
+			printf("sample %d of %s: %.15g, backwards %.15g\n", k, m->input_names[i], (up - down) / 8,
+			       ub[k * m->inputs + i]);
+			bad = bad || fabs((up - down) / 8 - ub[k * m->inputs + i]) > 1e-10;
+		}
+	return bad || along != m->inputs;
+}
+END
+
+# backwards NAME SPEC OPTION ...: also by columns of the step in the place of Phi
+backwards() {
+	name=$1 spec=$2
+	shift 2
+	"$PLGEN" --prefix judged "$@" "$spec" >r.c 2>log || echo 'no C' >>log
+	grep -q '^#define PL_BY_PHI 1' r.c && both='1 0' || both=0
+	for phi in $both; do
+		sed "s/^#define PL_BY_PHI .*/#define PL_BY_PHI $phi/" r.c >q.c
+		$run_cc -I"$root/runtime" '-DM(x)=judged##x' back.c q.c "$archive" -lm -o q >>log 2>&1 && ./q >>log
+		result $? "backwards: $name$([ $phi = 1 ] || echo ', by columns')"
+		: >log
+	done
+}
+for name in held ramp; do
+	backwards $name $name.spec --sensitivity m,v,u
+done
+backwards 'many params' net.spec
+backwards 'a column at a time' net.spec --sensitivity k
+backwards 'params of loads' eqs.spec --sensitivity w,F,x
+awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives.cases" >names || exit 99
+while read -r name; do
+	by=$(sed -n 's,^d[^/]*/d\([^ ]*\) .*,\1,p' "$name.values" | awk '!n[$0]++' | paste -s -d ,)
+	backwards "$name" "$name.spec" --sensitivity "$by"
+done <names
 tap_end

@@ -109,6 +109,19 @@ void emit_derivative_declarations(const struct emitter *e)
 	announce(e, spell(e, "void   $n_run_d($n *s, $n_d *ds, size_t n%s%s, double *out, double *J);",
 			  given_inputs(e) ? ", const double *u" : "", d->seeded ? ", const double *du" : ""),
 		 "out, J: n rows, or NULL");
+	const char *u = given_inputs(e) ? ", const double *u" : "";
+	const char *backwards = "A cost backwards: from w, its derivatives by the outputs behind a step, and lam, "
+				"those by the state there, to those by the state before it; pb of each column%s are "
+				"added to.  $n_gradient goes over n steps from s, with n rows of w or NULL, and room "
+				"for that many snapshots, 1 to PL_SNAPSHOTS; ds: the derivatives of s.  It returns how "
+				"many steps it has taken between them.";
+	say_comment(e, "", spell(e, backwards, d->seeded ? ", ub of each sample (before: of that at the start)" : ""));
+	announce(e, spell(e, "void   $n_back(const $n *s%s, const double *w, double lam[$N_STATES], "
+			     "double pb[$N_D]%s);", given_inputs(e) ? spell(e, ", const double u[$N_INPUTS]") : "",
+			  d->seeded ? ", double *ub, double *before" : ""), "a step from s");
+	announce(e, spell(e, "size_t $n_gradient(const $n *s, $n_d *ds, size_t n%s, const double *w, "
+			     "double lam[$N_STATES], double pb[$N_D]%s, $n *snapshot, size_t snapshots);", u,
+			  d->seeded ? ", double *ub" : ""), "");
 	say(e, "extern const pl_derivatives $n_derivatives;\n");
 	close_declarations(e);
 }
@@ -440,6 +453,16 @@ static void emit_values_of_columns(const struct emitter *e)
 	emit_array(e, "Of each: its value, its unit in SI units, its range, or 0 and 0", "d_by", 2, size, by, NULL);
 }
 
+static void emit_inputs_of_columns(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	int *input = ARRAY(int, (size_t)d->columns);
+	for (int i = 0; i < d->columns; i++)
+		input[i] = d->column[i].symbol->kind == SYMBOL_INPUT ? d->column[i].symbol->index : -1;
+	if (d->seeded)
+		emit_int_list(e, "d_input", d->columns, input);
+}
+
 void emit_step_derivatives(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -463,8 +486,10 @@ void emit_step_derivatives(const struct emitter *e)
 	emit_start(e);
 	emit_name_list(e, "d_names", d->columns, name);
 	emit_values_of_columns(e);
+	emit_inputs_of_columns(e);
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
-		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart });
+		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
+		   { "BY_PHI", is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi });
 	say_include(e, "derivatives.h");
 }

@@ -1,0 +1,325 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* back.h: NAME_back and NAME_gradient, a cost's derivatives by the state at the start, by the columns of derivatives
+ * and by every sample of the inputs, from those by the outputs at the ends of steps: step by step backwards, so that
+ * each is what the step computed forwards.  The state before a step is that of a snapshot, or steps from one.  Included
+ * by derivatives.h, which has the macros, and of these
+ *
+ *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state
+ *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
+ *
+ * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
+ * there are.  A seed is as large as what the column has without it, so that their difference loses nothing. */
+
+#if PL_INPUTS > 0
+#define PL_TAKES , u
+#define PL_GIVES , const real u[PL_INPUTS]
+#else
+#define PL_TAKES
+#define PL_GIVES
+#endif
+#if PL_SEEDED
+#define PL_ALONG , du
+#else
+#define PL_ALONG
+#endif
+
+typedef struct PL(back_work) {
+    PL_TYPE after, seeded;
+    PL(d) alone, ds; /* of the step without seeds; with them */
+    real J[PL_OUTPUTS][PL_DERIVATIVES], seed[PL_OUTPUTS][PL_DERIVATIVES], lam[PL_STATES];
+} PL(back_work);
+
+static real PL(d_size)(const real *value, int count, int apart)
+{
+    real most = 1;
+    int i;
+    for (i = 0; i < count; i++) {
+        const real size = pl_magnitude(value[i * apart]);
+        most = size > most ? size : most;
+    }
+    return most;
+}
+
+/* S: a seed for each state from `first` on, in a column of its own; scale: of each */
+static void PL(seed)(PL(d) *ds, int first, const real *scale)
+{
+    int p;
+    PL(set_d)(ds, NULL);
+    for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
+        ds->s[p][first + p] = scale[p];
+    }
+}
+
+/* lam += (derivative of outputs by the state)^T w; work->J is what they have without a state's */
+static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES])
+{
+    real scale[PL_DERIVATIVES];
+    int first, i, p;
+    b->ds = b->alone;
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        scale[p] = PL(d_size)(&b->J[0][p], PL_OUTPUTS, PL_DERIVATIVES);
+    }
+    for (first = 0; first < PL_STATES; first += PL_DERIVATIVES) {
+        PL(seed)(&b->ds, first, scale);
+        PL(out_d)(&b->after, &b->ds, b->seed);
+        for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
+            for (i = 0; i < PL_OUTPUTS; i++) {
+                lam[first + p] += w[i] * ((b->seed[i][p] - b->J[i][p]) / scale[p]);
+            }
+        }
+    }
+}
+
+/* lam: by the state after the step, made that by the state before it */
+static void PL(state_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real lam[PL_STATES])
+{
+    int i, j;
+#if PL_BY_PHI
+    (void)s;
+#if PL_INPUTS > 0
+    (void)u;
+#endif
+    for (j = 0; j < PL_STATES; j++) {
+        b->lam[j] = 0;
+        for (i = 0; i < PL_STATES; i++) {
+            b->lam[j] += PL(Phi)[i][j] * lam[i];
+        }
+    }
+#else
+    real scale[PL_DERIVATIVES];
+    int first, p;
+#if PL_SEEDED
+    const real *const du = NULL;
+#endif
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+#if PL_SEEDED
+        for (i = 0; i < PL_STATES && PL(d_input)[p] >= 0; i++) {
+            b->alone.s[p][i] = 0;
+        }
+#endif
+        scale[p] = PL(d_size)(b->alone.s[p], PL_STATES, 1);
+    }
+    b->ds = b->alone;
+#if PL_SEEDED
+    for (i = 0; i < PL_INPUTS; i++) {
+        b->ds.du[i] = 0;
+    }
+#endif
+    for (first = 0; first < PL_STATES; first += PL_DERIVATIVES) {
+        b->seeded = *s;
+        PL(seed)(&b->ds, first, scale);
+        PL(step_d)(&b->seeded, &b->ds PL_TAKES PL_ALONG);
+        for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
+            j = first + p;
+            b->lam[j] = 0;
+            for (i = 0; i < PL_STATES; i++) {
+                b->lam[j] += lam[i] * ((b->ds.s[p][i] - b->alone.s[p][i]) / scale[p]);
+            }
+        }
+    }
+#endif
+    for (j = 0; j < PL_STATES; j++) {
+        lam[j] = b->lam[j];
+    }
+}
+
+static real PL(column_back)(const PL(back_work) *b, int p, const real *w, const real *lam)
+{
+    real sum = 0;
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        sum += lam[i] * b->alone.s[p][i];
+    }
+    for (i = 0; i < PL_OUTPUTS && w != NULL; i++) {
+        sum += w[i] * b->J[i][p];
+    }
+    return sum;
+}
+
+/* A step from s without derivatives of its state, of the columns along inputs with these at its start and end; then
+ * what outputs have of them behind it */
+static void PL(alone)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real before, real now)
+{
+    PL(d) ds;
+#if PL_SEEDED
+    real du[PL_INPUTS];
+    int i;
+    for (i = 0; i < PL_INPUTS; i++) {
+        b->alone.du[i] = before;
+        du[i] = now;
+    }
+#else
+    (void)before;
+    (void)now;
+#endif
+    b->after = *s;
+    PL(set_d)(&b->alone, NULL);
+    PL(step_d)(&b->after, &b->alone PL_TAKES PL_ALONG);
+    ds = b->alone;
+    PL(set_d)(&ds, NULL);
+    PL(out_d)(&b->after, &ds, b->J);
+}
+
+static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real *w, real lam[PL_STATES],
+                         real pb[PL_DERIVATIVES]
+#if PL_SEEDED
+                         , real *ub, real *ub_before
+#endif
+                         )
+{
+    real sum;
+    int p;
+    PL(alone)(s, b PL_TAKES, 0, 1);
+    if (w != NULL) {
+        PL(outputs_back)(b, w, lam);
+    }
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        sum = PL(column_back)(b, p, w, lam);
+        pb[p] += sum;
+#if PL_SEEDED
+        if (ub != NULL && PL(d_input)[p] >= 0) {
+            ub[PL(d_input)[p]] += sum;
+        }
+#endif
+    }
+#if PL_SLOPED
+    PL(alone)(s, b PL_TAKES, 1, 0);
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        sum = PL(d_input)[p] >= 0 ? PL(column_back)(b, p, w, lam) : 0;
+        pb[p] += sum;
+        if (ub_before != NULL && PL(d_input)[p] >= 0) {
+            ub_before[PL(d_input)[p]] += sum;
+        }
+    }
+#elif PL_SEEDED
+    (void)ub_before;
+#endif
+    PL(state_back)(s, b PL_TAKES, lam);
+}
+
+void PL(back)(const PL_TYPE *s PL_GIVES, const real *w, real lam[PL_STATES], real pb[PL_DERIVATIVES]
+#if PL_SEEDED
+              , real *ub, real *ub_before
+#endif
+              )
+{
+    PL(back_work) b;
+    PL(init_d)(&b.after, &b.alone);
+    PL(row_back)(s, &b PL_TAKES, w, lam, pb
+#if PL_SEEDED
+                 , ub, ub_before
+#endif
+                 );
+}
+
+/* ---- snapshots: binomial checkpointing (Griewank and Walther 2000) ---- */
+
+/* How many steps r replays of each reach with c snapshots: (c + r)! / (c! r!), or more than `enough` */
+static size_t PL(reached)(size_t c, size_t r, size_t enough)
+{
+    size_t value = 1, i;
+    for (i = 1; i <= r && value <= enough; i++) {
+        value = value * (c + i) / i;
+    }
+    return value;
+}
+
+/* Of n steps from the newest of c snapshots: how far on the next one stands */
+static size_t PL(apart)(size_t n, size_t c)
+{
+    size_t r = 1, far, less;
+    if (c < 2) {
+        return n - 1;
+    }
+    while (PL(reached)(c, r, n) < n) {
+        r++;
+    }
+    far = r > 1 ? PL(reached)(c, r - 2, n) : 1;
+    less = PL(reached)(c - 1, r, n);
+    return n > less + far ? n - less : far;
+}
+
+size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
+#if PL_INPUTS > 0
+                    , const real *u
+#endif
+                    , const real *w, real lam[PL_STATES], real pb[PL_DERIVATIVES]
+#if PL_SEEDED
+                    , real *ub
+#endif
+                    , PL_TYPE *snapshot, size_t snapshots)
+{
+    size_t at[PL_SNAPSHOTS], top = 0, steps = 0, k, m, row;
+    PL(back_work) b;
+    int i, p;
+#if PL_SLOPED
+    real held[PL_INPUTS];
+    for (i = 0; i < PL_INPUTS; i++) {
+        held[i] = 0;
+    }
+#endif
+    if (snapshots > PL_SNAPSHOTS) {
+        snapshots = PL_SNAPSHOTS;
+    }
+    PL(init_d)(&b.after, &b.alone);
+    at[0] = 0;
+    snapshot[0] = *s;
+    for (k = n; k > 0; k--) {
+        PL_TYPE now = snapshot[top];
+        row = at[top];
+        while (row + 1 < k) {
+            m = PL(apart)(k - row, snapshots - top);
+            for (; m > 0; m--, row++, steps++) {
+#if PL_INPUTS > 0
+                PL(step)(&now, u + row * PL_INPUTS);
+#else
+                PL(step)(&now);
+#endif
+            }
+            if (top + 1 < snapshots) {
+                top++;
+                snapshot[top] = now;
+                at[top] = row;
+            }
+        }
+        PL(row_back)(&now, &b
+#if PL_INPUTS > 0
+                     , u + row * PL_INPUTS
+#endif
+                     , w == NULL ? NULL : w + row * PL_OUTPUTS, lam, pb
+#if PL_SEEDED
+                     , ub == NULL ? NULL : ub + row * PL_INPUTS
+#if PL_SLOPED
+                     , row == 0 ? held : ub == NULL ? NULL : ub + (row - 1) * PL_INPUTS
+#else
+                     , NULL
+#endif
+#endif
+                     );
+        ds->status |= b.alone.status | b.ds.status;
+        top -= at[top] == row && top > 0;
+    }
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+#if PL_SLOPED
+        if (PL(d_input)[p] >= 0) { /* the sample before the first step moves as ds says */
+            pb[p] += held[PL(d_input)[p]] * (ds->du[PL(d_input)[p]] - 1);
+        }
+#endif
+        for (i = 0; i < PL_STATES; i++) {
+            pb[p] += lam[i] * ds->s[p][i];
+        }
+    }
+    return steps;
+}
+
+static size_t PL(any_gradient)(const void *s, void *ds, size_t n, const real *u, const real *w, real *lam, real *pb,
+                               real *ub, void *snapshot, size_t snapshots)
+{
+    (void)u;
+    (void)ub;
+    return PL(gradient)((const struct PL_TYPE *)s, (PL(d) *)ds, n PL_TAKES, w, lam, pb
+#if PL_SEEDED
+                        , ub
+#endif
+                        , (struct PL_TYPE *)snapshot, snapshots);
+}
