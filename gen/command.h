@@ -92,6 +92,8 @@ void file_replace(struct file *f, void (*print)(FILE *to, const char *text, cons
 void mark_pair(struct file *code, struct file *header);     /* of two runs they must not compile; code NULL: alone */
 bool spares(int count, const char *const *path);            /* is nothing written over them? Else it says so */
 void publish(void);
+/* what was read, for make and ninja, where a file is asked for that says it */
+void print_depfile(const struct options *options, const struct spec *spec, const struct model *model);
 
 /* ---- pieces.c: the runtime, cut ---- */
 

@@ -11,11 +11,7 @@
 #include "run/run.h"
 #include "step/linear/images.h"
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
 #include <limits.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -441,36 +437,6 @@ static bool print_fmu(const struct work *w)
 	return made;
 }
 
-/* ---- what was read, for make and ninja ---- */
-
-/* A name in a make rule */
-static const char *escaped(const char *path)
-{
-	const char *text = "";
-	for (; *path; path++)
-		text = format("%s%s%c", text, *path == ' ' || *path == '#' ? "\\" : *path == '$' ? "$" : "", *path);
-	return text;
-}
-
-static void print_depfile(const struct work *w)
-{
-	const struct options *options = &w->options;
-	if (!options->depfile)
-		return;
-	struct file *f = file_new(options->depfile);
-	const char *made = options->fmu ? options->fmu : options->output;
-	fprintf(f->to, "%s", made ? escaped(made) : format("%s_pl.c", w->model->name));
-	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
-	if (strcmp(options->spec, "-") != 0)
-		fprintf(f->to, " %s", escaped(options->spec));
-	if (options->params)
-		fprintf(f->to, " %s", escaped(options->params));
-	for (int i = 0; i < w->spec->data.files; i++)
-		fprintf(f->to, " %s", escaped(w->spec->data.file[i]));
-	fputc('\n', f->to);
-	file_close(f);
-}
-
 static void print_names(const struct work *w)
 {
 	if (!w->options.a2l)
@@ -478,6 +444,15 @@ static void print_names(const struct work *w)
 	struct file *f = file_new(w->options.a2l);
 	print_a2l(f->to, w->step);
 	file_close(f);
+}
+
+static bool publish_all(const struct work *w)
+{
+	print_depfile(&w->options, w->spec, w->model);
+	if (!spares(w->spec->data.files, w->spec->data.file))
+		return false;
+	publish();
+	return true;
 }
 
 /* ---- over a param ---- */
@@ -562,11 +537,7 @@ static bool print_many(struct work *w, void (*print)(void *))
 	file_close(w->text);
 	if (!printed || (w->options.strict && diagnostics_harden()))
 		return false;
-	print_depfile(w);
-	if (!spares(w->spec->data.files, w->spec->data.file))
-		return false;
-	publish();
-	return true;
+	return publish_all(w);
 }
 
 /* ---- the whole ---- */
@@ -597,19 +568,9 @@ static bool compile(struct work *w)
 	rewrite_code(w);
 	if (!print_fmu(w))
 		return false;
-	print_depfile(w);
 	print_names(w);
-	if (!spares(w->spec->data.files, w->spec->data.file))
-		return false;
-	publish();
-	return true;
+	return publish_all(w);
 }
-
-/* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from
- * system to system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of
- * pages that cost nothing until they are used. */
-/* Of the thread that works; of memory that is not given back, as what is asked for again would be cleared again */
-enum { STACK_SIZE = 96 << 20, KEPT = 256 << 20 };
 
 struct command { int argc; char **argv; int status; };
 
@@ -629,20 +590,7 @@ static void *run(void *context)
 int plgen(int argc, char **argv)
 {
 	struct command command = { argc, argv, 1 };
-	pthread_attr_t attributes;
-	pthread_t thread;
-#ifdef M_ARENA_MAX
-	mallopt(M_ARENA_MAX, 1);        /* one thread works: it needs no heap of its own */
-#endif
-#ifdef M_TRIM_THRESHOLD
-	mallopt(M_TRIM_THRESHOLD, KEPT);
-	mallopt(M_MMAP_THRESHOLD, KEPT);
-#endif
-	if (pthread_attr_init(&attributes) != 0 || pthread_attr_setstacksize(&attributes, STACK_SIZE) != 0 ||
-	    pthread_create(&thread, &attributes, run, &command) != 0) {
+	if (!run_deep(run, &command))
 		fputs("plgen: error: out of memory\n", stderr);
-		return 1;
-	}
-	pthread_join(thread, NULL);
 	return command.status;
 }

@@ -293,3 +293,32 @@ void publish(void)
 		free(file[i].text);
 	}
 }
+
+/* ---- what was read, for make and ninja ---- */
+
+/* A name in a make rule */
+static const char *escaped(const char *path)
+{
+	const char *text = "";
+	for (; *path; path++)
+		text = format("%s%s%c", text, *path == ' ' || *path == '#' ? "\\" : *path == '$' ? "$" : "", *path);
+	return text;
+}
+
+void print_depfile(const struct options *options, const struct spec *spec, const struct model *model)
+{
+	if (!options->depfile)
+		return;
+	struct file *f = file_new(options->depfile);
+	const char *made = options->fmu ? options->fmu : options->output;
+	fprintf(f->to, "%s", made ? escaped(made) : format("%s_pl.c", model->name));
+	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
+	if (strcmp(options->spec, "-") != 0)
+		fprintf(f->to, " %s", escaped(options->spec));
+	if (options->params)
+		fprintf(f->to, " %s", escaped(options->params));
+	for (int i = 0; i < spec->data.files; i++)
+		fprintf(f->to, " %s", escaped(spec->data.file[i]));
+	fputc('\n', f->to);
+	file_close(f);
+}

@@ -90,6 +90,7 @@ enum {
 
 void  memory_open(void);
 void  memory_close(void);
+bool  run_deep(void *(*work)(void *), void *context);       /* on a large stack; false: there is no memory for it */
 /* what says that a limit is reached, and ends the program */
 void  memory_on_limit(void (*report)(const char *message));
 bool  memory_beyond(double part);                           /* of LIMIT_BYTES */

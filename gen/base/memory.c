@@ -6,6 +6,10 @@
  * counts, so that a spec is within them on every machine or on none. */
 #include "base/base.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <pthread.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -412,4 +416,27 @@ bool rationals_zero(size_t count, const mpq_t *q)
 		if (mpq_sgn(q[i]) != 0)
 			return false;
 	return true;
+}
+
+/* ---- the stack ---- */
+
+/* Of the thread that works; of memory that is not given back, as what is asked for again would be cleared again */
+enum { STACK_SIZE = 96 << 20, KEPT = 256 << 20 };
+
+/* The walks over expressions recurse, LIMIT_DEPTH deep at most; what stack a program is started with differs from
+ * system to system, and a limit of the user's cannot be raised from here. So all work is done on a stack of its own, of
+ * pages that cost nothing until they are used. */
+bool run_deep(void *(*work)(void *), void *context)
+{
+	pthread_attr_t attributes;
+	pthread_t thread;
+#ifdef M_ARENA_MAX
+	mallopt(M_ARENA_MAX, 1);        /* one thread works: it needs no heap of its own */
+#endif
+#ifdef M_TRIM_THRESHOLD
+	mallopt(M_TRIM_THRESHOLD, KEPT);
+	mallopt(M_MMAP_THRESHOLD, KEPT);
+#endif
+	return pthread_attr_init(&attributes) == 0 && pthread_attr_setstacksize(&attributes, STACK_SIZE) == 0 &&
+	       pthread_create(&thread, &attributes, work, context) == 0 && pthread_join(thread, NULL) == 0;
 }

@@ -8,14 +8,6 @@
 /* ---- banner.c, declarations.c: what a header has ---- */
 
 void emit_banner(const struct emitter *e);
-void banner_linear(const struct emitter *e);                      /* what is approximated, of each kind */
-void banner_remainder(const struct emitter *e);
-void banner_event_split(const struct emitter *e);
-void banner_regions(const struct emitter *e);
-void banner_parts(const struct emitter *e);
-void banner_expanded(const struct emitter *e);
-void banner_collocated(const struct emitter *e);
-void banner_normal(const struct emitter *e);
 const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
 const char **names_of_inputs(const struct emitter *e);
 /* enum { NAME_KIND_..., ... } */

@@ -24,7 +24,6 @@ static void emit_linear_at(const struct emitter *e)
 }
 
 static const struct printers linear = {
-	.banner = banner_linear,
 	.status_note = "0, or PL_NOT_FINITE: a state is infinite or not a number",
 	.pass = emit_pass_of_changes,
 	.step = emit_step,
@@ -82,7 +81,6 @@ static void emit_later_region_step(const struct emitter *e)
 	.places = always
 
 static const struct printers regions = {
-	.banner = banner_regions,
 	OF_REGIONS,
 	.events = emit_event_note,
 	.members = emit_region_members,
@@ -100,7 +98,6 @@ static void emit_tables_of_parts(const struct emitter *e)
 }
 
 static const struct printers parts = {
-	.banner = banner_parts,
 	OF_REGIONS,
 	.events = emit_event_note_of_parts,
 	.members = emit_part_members,
@@ -112,7 +109,6 @@ static const struct printers parts = {
 /* ---- remainder: a list of actions ---- */
 
 static const struct printers with_remainder = {
-	.banner = banner_remainder,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.pass = emit_pass_of_changes,
 	.step = emit_remainder_step,
@@ -135,7 +131,6 @@ static void emit_expansion_constants(const struct emitter *e)
 	.declare_state = emit_switching_declarations
 
 static const struct printers event_split = {
-	.banner = banner_event_split,
 	OF_SERIES,
 	.members = emit_event_split_members,
 	.places = always,
@@ -147,7 +142,6 @@ static const struct printers event_split = {
 /* ---- expanded: the Taylor series of the solution ---- */
 
 static const struct printers expanded = {
-	.banner = banner_expanded,
 	OF_SERIES,
 	.members = emit_expansion_members,
 	.places = expansion_places,
@@ -159,7 +153,6 @@ static const struct printers expanded = {
 /* ---- collocated: polynomials that solve the equations at nodes ---- */
 
 static const struct printers collocated = {
-	.banner = banner_collocated,
 	OF_SERIES,
 	.members = emit_collocation_members,
 	.places = always,
@@ -171,7 +164,6 @@ static const struct printers collocated = {
 /* ---- normal modes ---- */
 
 static const struct printers normal_modes = {
-	.banner = banner_normal,
 	.members = emit_normal_members,
 	.status_note = "0, or PL_NOT_FINITE once a step has left the finite numbers",
 	.places = always,

@@ -11,9 +11,7 @@ struct reads;
 /* ---- flows.c: what the C of a step has by its flow and events, in the order of the C ---- */
 
 struct printers {                       /* NULL: none of its own */
-	/* The comment at the top: what is approximated; before what a step costs */
-	void (*banner)(const struct emitter *e);
-	const char *step_note;
+	const char *step_note;      /* before what a step costs */
 	/* Behind that, in the C alone: how an event is found */
 	void (*events)(const struct emitter *e);
 	/* The header: constants; types before that of the state; at its end; functions */

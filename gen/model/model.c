@@ -40,9 +40,7 @@ static void set_tunables(struct building *b)
 	for (int i = 0; b->request->again.tunable && i < b->spec->tunables; i++) {
 		const struct tunable *tunable = &b->spec->tunable[i];
 		struct node *value = NEW(struct node);
-		*value = (struct node){ .kind = NODE_NUMBER,
-					.at = tunable->at,
-					.start = tunable->at,
+		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at,
 					.end = tunable->at };
 		mpq_init(value->number);
 		mpq_set(value->number, b->request->again.tunable[i]);
@@ -67,11 +65,8 @@ struct symbol_work {
 static void evaluate_symbol(void *context)
 {
 	struct symbol_work *work = context;
-	struct node name = { .kind = NODE_NAME,
-			     .at = work->symbol->at,
-			     .start = work->symbol->at,
-			     .end = work->symbol->at,
-			     .symbol = work->symbol };
+	const struct place at = work->symbol->at;
+	struct node name = { .kind = NODE_NAME, .at = at, .start = at, .end = at, .symbol = work->symbol };
 	collect(&work->b->collector, &name);
 }
 
@@ -210,10 +205,8 @@ static void name_relative(struct building *b)
 		const struct model *written = relative->written;
 		int like = j < written->n ? j : 0;
 		model->frame.coord[j] = NEW(struct symbol);
-		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD,
-							  .name = relative->name[j],
-							  .at = written->frame.coord[like]->at,
-							  .index = j,
+		*model->frame.coord[j] = (struct symbol){ .kind = SYMBOL_COORD, .name = relative->name[j],
+							  .at = written->frame.coord[like]->at, .index = j,
 							  .highest = relative->order[j] };
 		model->equations.owner[j] = j < written->n ? written->equations.owner[j] : j;
 	}
@@ -452,29 +445,6 @@ static void begin_model(struct building *b)
 	for (struct symbol *s = b->spec->first; s; s = s->next)
 		s->made.full = NULL;
 	b->polynomial = forcing_of(&b->collector, zero, zero, zero);
-}
-
-/* The statement `modes`, or --modes in its place */
-static void evaluate_modes(void *context)
-{
-	struct building *b = context;
-	struct wanted_modes *wanted = &b->model->modes;
-	struct mode_list list = b->spec->modes;
-	if (b->request->modes)
-		list = parse_mode_list(b->spec, source_argument(b->request->modes));
-	if (!list.at.source)
-		abandon();
-	if (b->spec->ranges > 0)
-		error(b->spec->range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
-	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, list.count), list.each,
-					 !list.without_static };
-	for (int i = 0; i < list.count; i++) {
-		wanted->number[i] = whole_number(b, list.number[i], 1, LIMIT_STATES,
-						 list.each ? "the number of a mode" : "a count of modes");
-		for (int j = 0; j < i; j++)
-			if (wanted->number[j] == wanted->number[i])
-				error(list.number[i]->start, NULL, "mode %d is in the list already", wanted->number[i]);
-	}
 }
 
 /* Params, equations and outputs as forms; initial values and the step. With values of the tunable params no more than

@@ -139,11 +139,6 @@ static struct form *at_rest(const struct building *b, struct point *rest, const 
 	return sum;
 }
 
-static struct form *remaining(const struct solving *w, int row)
-{
-	return at_rest(w->b, w->rest, residual_of(w, row));
-}
-
 static struct point *point_at_rest(struct building *b, int n)
 {
 	struct fixing *fixing = ARRAY(struct fixing, n);
@@ -278,7 +273,7 @@ static void solve_block(struct solving *w, int block)
 	for (int i = 0; i < n; i++) {
 		const int row = row_of(w, order[i]);
 		F[i] = residual_of(w, row);
-		f[i] = form_difference(NEW(struct form), remaining(w, row));
+		f[i] = form_difference(NEW(struct form), at_rest(w->b, w->rest, F[i]));
 		for (int j = 0; j < n; j++)
 			M[i * n + j] = w->M[row * w->n + order[j]];
 		highest[i] = (struct basis){ .kind = BASIS_COORD, .index = order[i],
@@ -387,14 +382,12 @@ static void check_mass_of(void *context)
 	const struct linear_system *system = &work->mass->system;
 	const int n = system->n;
 	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
-	mpq_t *start = rationals((size_t)(n * n));
 	int column;
 	for (int i = 0; i < n * n; i++) {
 		const struct form *entry = form_at(work->start, system->M[i]);
 		if (!is_constant(entry))
 			return;
 		constant_value(&work->b->collector, entry, value[i]);
-		mpq_set(start[i], value[i]);
 	}
 	const struct energy *kinetic;
 	int coords = 0;
@@ -406,7 +399,7 @@ static void check_mass_of(void *context)
 	if (negative >= 0)
 		return;
 	if (rational_inverse(n, value, inverse, &column)) {
-		work->mass->start = start;
+		work->mass->start = rationals_copied((size_t)(n * n), (const mpq_t *)value);
 		return;
 	}
 	const struct basis *highest = &system->written->highest[column];

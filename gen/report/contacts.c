@@ -12,7 +12,8 @@ static int held_in(const struct step *step, const struct series_hold *hold)
 	return step->taylor.switching->function[hold->function].rank[hold->breakpoint] + 1;
 }
 
-const char *contact_text(const struct step *step, int hold)
+/* Friction, and where it sticks */
+static const char *contact_text(const struct step *step, int hold)
 {
 	const struct contacts *c = step->taylor.switching->contacts;
 	const struct model *model = step->model;
@@ -34,6 +35,16 @@ static const char *rest_text(const struct step *step, const struct series_impact
 						  series_impact->function);
 }
 
+void text_impact_rules(FILE *to, const struct model *model)
+{
+	if (model->contacts.impacts > 1)
+		fputs("Those of one instant act in this order, each from the state that the one before has left.\n",
+		      to);
+	if (has_bounces(model))
+		fprintf(to, "Bounces that would all be over within 2^-23 h come to rest: %s_rested counts.\n",
+			model->name);
+}
+
 void text_contacts(FILE *to, const struct step *step)
 {
 	const struct contacts *c = step->taylor.switching->contacts;
@@ -45,6 +56,8 @@ void text_contacts(FILE *to, const struct step *step)
 		fprintf(to, "    impact %d: %s%s\n", i, text_between(when->at, when->end),
 			rest_text(step, &c->series_impact[i]));
 	}
+	if (c)
+		text_impact_rules(to, step->shown->model);
 }
 
 void json_contacts(FILE *to, const struct step *step)

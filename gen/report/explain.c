@@ -64,25 +64,11 @@ static void text_poles(FILE *to, const struct model *model, const struct resolve
 		fprintf(to, "    %s\n", pole_row(&pole[i], 36));
 }
 
-static void text_held(FILE *to, const struct step *step)
+void text_linear_part(FILE *to, const struct step *step)
 {
-	const struct linear *system = &step->branch->system;
-	int n = system->n;
-	fputs("Scheme pl holds these accelerations at their value at the start of each step:\n", to);
-	for (int i = 0; i < n; i++)
-		for (int k = 0; k < 2; k++)
-			for (int j = 0; j < n; j++) {
-				RATIONAL factor = ZERO;
-				mpq_neg(factor, (k ? system->heldC : system->heldK)[i * n + j]);
-				if (mpq_sgn(factor) != 0)
-					fprintf(to, "    in %s'': %s * %s%s\n", step->model->names.coord[i],
-						readable_text(factor), step->model->names.coord[j], k ? "'" : "");
-			}
-	fprintf(to,
-		"It is of first order in h. Its modified equation y' = L y - (h/2) R L y (R: the held terms) has "
-		"growth rate\n"
-		"%.6g 1/s, the largest real part of its poles, at h = %s s.\n",
-		growth_rate(step), readable_text(step->model->h));
+	if (is_nonlinear(step))
+		fputs("\nOf the terms that are linear with constant coefficients:\n", to);
+	text_poles(to, step->model, step->written);
 }
 
 static int tuned_entries(const struct tuning *t, int systems)
@@ -211,45 +197,23 @@ static void text_step(FILE *to, const struct step *step)
 			step->series.degree, 1 << step->series.halvings, step->series.halvings ? "s" : "");
 }
 
-/* Stages, order and nodes; how Newton's method solves them; what an iteration costs */
-static void text_collocation(FILE *to, const struct step *step)
+static void text_nodes(FILE *to, const struct collocation *x)
 {
-	const struct collocation *x = step->collocation;
-	int coords = step->collocation->motion->coords;
-	fprintf(to, ".\nThe collocation has %d stages, of order %d at the ends of its steps and %d inside, at the "
-		"nodes\n   ",
-		x->stages, 2 * x->stages - 1, x->stages + 1);
+	fprintf(to, "The collocation is of order %d inside its steps, of which each takes two to four iterations; its "
+		    "nodes are at\n   ", x->stages + 1);
 	for (int i = 0; i < x->stages; i++)
 		fprintf(to, "%s %.6g", i ? "," : "", x->node[i]);
-	if (step->collocation->motion->apart)
-		fprintf(to, ".\nNewton's method takes the Jacobian where a step starts, and solves one real and %d "
-			"complex systems of %d unknowns", x->modes - 1, coords);
-	else
-		fprintf(to, ".\nNewton's method takes the Jacobian at each node, and solves %d unknowns together",
-			x->stages * coords);
-	fprintf(to, ":\n%d multiplications, %d additions, %d calls an iteration, of which a step takes two to four; "
-		"where the step is longer than h, several h share them", step->collocation->iteration.multiplications,
-		step->collocation->iteration.additions, step->collocation->iteration.calls);
+	fputs(".\n", to);
 }
 
-/* What went where: the operators, then the remainder of the first; those of the others differ in linear terms only. */
+/* The operators, then the remainder of the first; those of the others differ in linear terms only. */
 static void text_split(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	fprintf(to, "Split: y' = A y + loads%s + r(t, y). A, the loads%s are exact, each constant correctly rounded.\n",
-		step->branch->system.inputs ? " + inputs" : "",
-		model->remainder.loads             ? " excepted"
-		: step->branch->system.inputs ? " and the inputs"
-					      : "");
 	for (int k = 0; k < model->schedule.operators && !step->normal; k++) {
 		const struct operator *operator = &model->schedule.operator[k];
-		if (!*operator->text) {
-			fputs(scheme_row(model->scheme)->holds_coupling
-				      ? "A: each coordinate's own terms.\n"
-				      : "A: the linear terms with constant coefficients, as above.\n",
-			      to);
+		if (!*operator->text)
 			continue;
-		}
 		fprintf(to,
 			"A: the Jacobian of the equations at %s (of an entry that still moves there, the constant "
 			"part):\n",
@@ -260,23 +224,12 @@ static void text_split(FILE *to, const struct step *step)
 			text_poles(to, model, step->shown->branch[k].resolvent);
 	}
 	if (step->normal)
-		text_normal(to, step);
+		text_frequencies(to, step);
 	if (model->schedule.operators > 1)
 		fputs("A step uses the first operator whose value is not below the current one, else the last.\n", to);
-	fprintf(to, "Scheme %s is of order %d in h", scheme_name(model->scheme), order_of_step(step));
-	if (model->truncation.adaptive)
-		fprintf(to, ", its steps as long as a tolerance of %s lets them be",
-			readable_text(model->truncation.tolerance));
-	if (model->truncation.over > 1)
-		fprintf(to, ", with the error of steps of %d h: one expansion is over them", model->truncation.over);
+	fprintf(to, "Scheme %s is of order %d in h.\n", scheme_name(model->scheme), order_of_step(step));
 	if (step->collocation)
-		text_collocation(to, step);
-	if (loses_order(model))
-		fprintf(to, " where all is smooth; here of order %s at most: %s", order_text(model),
-			smoothness_text(model));
-	fputs(".\n", to);
-	if (step->taylor.switching)
-		text_series_switching(to, step);
+		text_nodes(to, step->collocation);
 	if (step->taylor.expansion)
 		text_reach(to, step);
 	fprintf(to, "r, left to scheme %s, is a force on each of these equations%s:\n", scheme_name(model->scheme),
@@ -342,21 +295,27 @@ static const struct form *written_residual(const struct model *model, int row)
 	return e->full ? residual_as_written(e->full, e->owner, row) : e->residual[row].form;
 }
 
+void text_written(FILE *to, const struct step *step)
+{
+	const struct spec *spec = step->model->spec;
+	const struct element *element = spec->element;
+	for (int i = 0; i < spec->equations; i++)
+		fprintf(to, "    %s\n",
+			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));
+	for (int i = 0; i < spec->elements; i++)
+		if (element[i].kind != ELEMENT_ENERGY)
+			fprintf(to, "    %s\n", written_text(element[i].part, element[i].at, element[i].end));
+	for (int i = 0; i < spec->energies; i++)
+		if (energy_text(spec, i))
+			fprintf(to, "    %s\n", energy_text(spec, i));
+}
+
 void text_equations(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct spec *spec = model->spec;
 	text_point(to, step);
-	for (int i = 0; i < spec->equations; i++)
-		fprintf(to, "    %s\n",
-			written_text(spec->equation[i].part, spec->equation[i].at, spec->equation[i].end));
-	for (int i = 0; i < spec->elements; i++)
-		if (spec->element[i].kind != ELEMENT_ENERGY)
-			fprintf(to, "    %s\n",
-				written_text(spec->element[i].part, spec->element[i].at, spec->element[i].end));
-	for (int i = 0; i < spec->energies; i++)
-		if (energy_text(spec, i))
-			fprintf(to, "    %s\n", energy_text(spec, i));
+	text_written(to, step);
 	for (int i = 0; i < spec->drawings; i++)
 		fprintf(to, "    %s\n",
 			written_text(spec->drawing[i].part, spec->drawing[i].at, spec->drawing[i].end));
@@ -372,16 +331,11 @@ void text_equations(FILE *to, const struct step *step)
 void text_course(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	if (scheme_row(model->scheme)->holds_coupling)
-		text_held(to, step);
+	text_scheme(to, step);
 	if (model->switching)
-		text_regions(to, step);
+		text_region_list(to, step);
 	else if (has_remainder(step))
 		text_split(to, step);
-	else if (!scheme_row(model->scheme)->holds_coupling)
-		fprintf(to, "%s: every constant is its closed form, correctly rounded.\n",
-			model->truncated ? "Modes are dropped, nothing else is approximated"
-					 : "Nothing is approximated");
 	if (model->truncated)
 		text_modal_truncation(to, model);
 	else if (model->written != model)

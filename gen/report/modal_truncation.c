@@ -74,8 +74,6 @@ void text_modal_truncation(FILE *to, const struct model *model)
 {
 	const struct modal_truncation *s = model->truncated;
 	const struct modes *modes = s->modes;
-	fprintf(to, "Modes %s of %d are kept; %s.\n", mode_numbers(s, true), modes_of_model(s),
-		static_correction_text(model));
 	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]",
 		"damping ratio", "");
 	for (int i = 0; i < modes->count; i++) {
@@ -91,10 +89,6 @@ void text_modal_truncation(FILE *to, const struct model *model)
 	}
 	fputs("Of the largest sizes that modes can ever have in an output, by the start and the loads, or by a step of "
 	      "an input.\n", to);
-	fprintf(to, "From the start and under the loads%s outputs lose at most (sums of |residues|, for all time):\n",
-		model->system.inputs ? ", inputs 0," : "");
-	for (int i = 0; i < model->outputs; i++)
-		fprintf(to, "    %s\n", truncation_text(model, i));
 	fprintf(to, "States: %s\n", name_list(model->system.states, model->names.state));
 }
 

@@ -5,7 +5,7 @@
 #include "step/exponential/normal.h"
 #include "step/exponential/weights.h"
 
-const char *operators_of_modes(const struct step *step)
+static const char *operators_of_modes(const struct step *step)
 {
 	const struct model *model = step->model;
 	const char *first = model->schedule.operator[0].text,
@@ -17,14 +17,14 @@ const char *operators_of_modes(const struct step *step)
 	return format("those of the Jacobian at %s to %s, %d operators", first, last, model->schedule.operators);
 }
 
-const char *exact_in_modes(const struct step *step)
+static const char *exact_in_modes(const struct step *step)
 {
 	return step->model->remainder.split->forcings
 		       ? "what each mode does by itself, and under loads e^{a t} cos(w t + p)"
 		       : "what each mode does by itself";
 }
 
-const char *course_of_modes(const struct step *step)
+static const char *course_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
 	if (m->multistep.points == 0)
@@ -36,7 +36,7 @@ const char *course_of_modes(const struct step *step)
 		      m->collocation.stages + 1);
 }
 
-const char *stability_of_modes(const struct step *step)
+static const char *stability_of_modes(const struct step *step)
 {
 	const struct stability *s = &step->normal->stability;
 	bool inside = s->radius < 1;
@@ -46,7 +46,7 @@ const char *stability_of_modes(const struct step *step)
 		      inside ? 1 - s->radius : s->radius - 1, s->time, s->span, s->growth_factor);
 }
 
-int numbers_of_modes(const struct step *step)
+static int numbers_of_modes(const struct step *step)
 {
 	const struct normal *m = step->normal;
 	int n = m->modes, width = m->width;
@@ -63,9 +63,22 @@ int numbers_of_modes(const struct step *step)
 
 void text_normal(FILE *to, const struct step *step)
 {
+	const struct model *model = step->model;
+	fprintf(to, "Normal modes of M q'' + C q' + K q = 0, K and C symmetric: %s.\n", operators_of_modes(step));
+	fprintf(to, "Exact: %s; approximated, by polynomials in time: all %s forces on the modes.\n",
+		exact_in_modes(step), model->remainder.split->forcings ? "other" : "these");
+	fprintf(to, "Step: %s.\nStability: %s.\n", course_of_modes(step), stability_of_modes(step));
+	fprintf(to, "Tables: at most %d numbers, of which a step reads those of one operator.\n",
+		numbers_of_modes(step));
+	if (model->system.segments > 1 && !step->event_split)
+		fprintf(to, "Where functions of time change their formula, the method starts anew%s.\n",
+			step->normal->steady.flow ? "; after the last change steps are exact" : "");
+}
+
+/* Of the first operator and the last */
+void text_frequencies(FILE *to, const struct step *step)
+{
 	const struct normal *m = step->normal;
-	fprintf(to, "Modes of M q'' + C q' + K q = 0, K and C symmetric: %s. Exact: %s. All else is r: a force on each "
-		    "mode.\n", operators_of_modes(step), exact_in_modes(step));
 	for (int b = 0; b < m->operators; b += m->operators > 1 ? m->operators - 1 : 1) {
 		fprintf(to, "    modes%s%s, [Hz], and damping ratio:\n", m->operators > 1 ? " at " : "",
 			m->operators > 1 ? step->model->schedule.operator[b].text : "");
@@ -73,11 +86,6 @@ void text_normal(FILE *to, const struct step *step)
 			fprintf(to, "    %-24.8g %.8g\n", m->frequency[b * m->modes + j] / 6.283185307179586,
 				m->ratio[b * m->modes + j]);
 	}
-	fprintf(to, "Step: %s.\nStability: %s.\nTables: at most %d numbers.\n", course_of_modes(step),
-		stability_of_modes(step), numbers_of_modes(step));
-	if (m->steady.flow)
-		fprintf(to, "From t = %s s on nothing changes any more, and steps are exact: e^{A h} over modes.\n",
-			readable_text(step->model->system.change[step->model->system.segments - 2]));
 }
 
 void json_normal(FILE *to, const struct step *step)

@@ -121,37 +121,49 @@ static void text_switching_functions(FILE *to, const struct step *step)
 			breakpoints_text(s->function[i].breaks, (const mpq_t *)s->function[i].at));
 }
 
+static void text_region_number(FILE *to, int functions)
+{
+	fputs(functions == 1 ? "The number of a region is that of its interval of switching function 0.\n"
+			     : "The number of a region is i0 + n0*(i1 + n1*(i2 + ...)), i0 being its interval of "
+			       "switching function 0, n0 how many intervals that has.\n", to);
+}
+
 /* What chooses formulas by the state, of a series */
 void text_series_switching(FILE *to, const struct step *step)
 {
 	const struct expansion *x = step->taylor.switching;
-	const char *ends = step->event_split
-		? "a step goes on with others where a switching function passes a breakpoint"
-				     : format("%s ends where a switching function passes a breakpoint",
-					      step->collocation ? "an internal step" : "a series");
-	fprintf(to, "The state chooses formulas; %s, at most %d times%s:\n", ends, max_events(step->model),
-		step->event_split ? "" : " in a step");
+	if (step->event_split)
+		fputs("The state chooses formulas: steps go from crossing to crossing, the first root of the cubic "
+		      "through a switching function's values and slopes at both ends; there formulas change.\n", to);
+	else
+		fprintf(to, "The state chooses formulas: %s is of those between two crossings. Where a switching "
+			    "function passes a breakpoint is the first root of its %s, found before it is stepped "
+			    "over; costs below are without the search.\n",
+			step->collocation ? "an internal step" : "a series",
+			!step->collocation	 ? "own series"
+			: step->taylor.expansion ? "own series, or of its polynomial through the nodes"
+						 : "polynomial through the start and the nodes");
 	for (int i = 0; i < x->functions; i++)
 		fprintf(to, "    switching function %d: %s, breakpoints %s\n", i, series_switching_text(step, i),
 			rising_text(&x->function[i]));
 	text_contacts(to, step);
+	if (regions_of_series(x))
+		text_region_number(to, x->functions);
 }
 
-const char *frictions_text(const struct switching *s, const char *indent)
+/* What rubs, a line each, and where it sticks: its expression, and the interval of that */
+static void text_frictions(FILE *to, const struct switching *s)
 {
-	const char *text = "";
 	for (int i = 0, shown = 0; i < s->frictions; i++) {
 		const struct node *node = s->friction[i].atom->node;
 		if (!is_repeated(s, i))
-			text = format("%s%sfriction %d: %s; sticks in interval %d of switching function %d\n", text,
-				      indent,
-				      shown++, text_between(node->start, node->end), stick_of(s, &s->friction[i]),
-				      s->friction[i].function);
+			fprintf(to, "    friction %d: %s; sticks in interval %d of switching function %d\n", shown++,
+				text_between(node->start, node->end), stick_of(s, &s->friction[i]),
+				s->friction[i].function);
 	}
 	for (int i = 0; i < s->sliders; i++)
 		if (!is_repeated_slider(s, i))
-			text = format("%s%sslider: %s\n", text, indent, slider_text(s, i));
-	return text;
+			fprintf(to, "    slider: %s\n", slider_text(s, i));
 }
 
 static void text_intervals(FILE *to, const struct switching *s, int region)
@@ -164,18 +176,16 @@ static void text_intervals(FILE *to, const struct switching *s, int region)
 		s->region[region].system);
 }
 
-static void text_way(FILE *to, const struct step *step, const char *of)
+static void text_way(FILE *to, const struct event_check *check)
 {
-	if (step->regions.event_check.fast_path)
-		fprintf(to,
-			"%s that a bound shows clear is one product; up to %d crossings go by Taylor polynomials of "
-			"degree %d, all else by the search.\n",
-			of, MOST_FAST_PATH, step->regions.event_check.degree);
-	else if (step->regions.event_check.is_made)
-		fprintf(to, "%s that a bound shows clear is one product, all else goes by the search.\n", of);
+	const char *clear = "A step that a bound shows to be free of events is one matrix product";
+	if (check->fast_path)
+		fprintf(to, "%s; up to %d crossings that are certain are computed by Taylor polynomials of degree %d; "
+			    "the search does all other steps.\n", clear, MOST_FAST_PATH, check->degree);
+	else if (check->is_made)
+		fprintf(to, "%s; the search does all other steps.\n", clear);
 	else
-		fprintf(to, "%s goes by the search: %s.\n", *of == 'A' ? "Every step" : of,
-			step->regions.event_check.searches);
+		fprintf(to, "Every step goes by the search: %s.\n", check->searches);
 }
 
 static void text_impacts(FILE *to, const struct model *model)
@@ -193,72 +203,103 @@ static void text_impacts(FILE *to, const struct model *model)
 
 static void text_of_one_part(FILE *to, const struct step *step)
 {
-	const struct switching *s = step->shown->model->switching;
-	fprintf(to,
-		"Piecewise linear: %d regions%s, %d of them different; in each nothing is approximated, every constant "
-		"is correctly rounded.\n",
-		possible_regions(s), s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
+	const struct model *model = step->shown->model;
+	const struct switching *s = model->switching;
+	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions%s, %d "
+		    "different, in each of which every constant is its closed form, correctly rounded; crossings "
+		    "inside a step are found in order, to rounding.\n", possible_regions(s),
+		s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	text_switching_functions(to, step);
-	fputs(frictions_text(s, "    "), to);
-	text_impacts(to, step->shown->model);
+	text_frictions(to, s);
+	text_impacts(to, model);
+	text_impact_rules(to, model);
 	if (s->sharing)
-		fprintf(to, "Rigid-body modes: %d independent parts have their regions together.\n",
-			s->sharing);
-	for (int r = 0; r < s->regions; r++)
-		if (s->region[r].possible) {
-			fprintf(to, "    region %d", r % regions_at_once(s));
-			text_intervals(to, s, r);
-		}
-	text_way(to, step, "A step");
-	fprintf(to, "Tables: %ld bytes. Per step at most %d crossings and %d splits; at most %ld multiplications.\n",
-		bytes_of_regions(step) + refresh_bytes(step), max_events(step->model), max_splits(step->model),
-		most_of_regions(step));
+		fprintf(to, "Rigid-body modes: %d independent parts have their regions together.\n", s->sharing);
+	text_way(to, &step->regions.event_check);
 }
 
 static void text_part(FILE *to, const struct step *full, int index)
 {
-	const struct switching *all = full->model->switching;
-	const struct region_part *part = &all->part[index];
+	const struct region_part *part = &full->model->switching->part[index];
 	const struct switching *s = part->model->switching;
+	const struct event_check *check = &full->regions.part[index]->regions.event_check;
 	fprintf(to, "    part %d: %s", index, name_list(part->model->n, part->model->names.coord));
 	if (s->functions == 0) {
 		fputs("; linear\n", to);
 		return;
 	}
-	fputs("; switching functions", to);
+	fprintf(to, "; switching function%s", s->functions > 1 ? "s" : "");
 	for (int i = 0; i < s->functions; i++)
 		fprintf(to, "%s %d", i ? "," : "", part->function[i]);
-	fprintf(to, "; %d regions, %d of them different\n", possible_regions(s), s->systems);
-	for (int r = 0; r < s->regions; r++)
-		if (s->region[r].possible) {
-			fprintf(to, "        %d of the region's number", share_of_region(part, all, r));
-			text_intervals(to, s, r);
-		}
-	text_way(to, full->regions.part[index], "        A step of it");
+	fprintf(to, "; %d regions, %d different", possible_regions(s), s->systems);
+	if (check->fast_path)
+		fprintf(to, "; polynomials of degree %d\n", check->degree);
+	else
+		fprintf(to, "; %s\n", check->is_made ? "no polynomials: the search"
+						     : format("every step goes by the search: %s", check->searches));
 }
 
 static void text_parts(FILE *to, const struct step *step)
 {
-	long bytes = refresh_bytes(step), most = 0;
-	fprintf(to,
-		"Piecewise linear, in %d independent parts, each stepped by itself; in each region nothing is "
-		"approximated, every constant is correctly rounded.\n",
+	const struct step *fast = NULL;
+	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear, in %d independent "
+		    "parts, each with regions and crossings of its own: in each region every constant is its closed "
+		    "form, correctly rounded; crossings inside a step are found in order, to rounding.\n",
 		step->regions.parts);
 	text_switching_functions(to, step);
 	for (int p = 0; p < step->regions.parts; p++) {
 		text_part(to, step, p);
-		bytes += bytes_of_regions(step->regions.part[p]);
-		most += most_of_regions(step->regions.part[p]);
+		if (step->regions.part[p]->regions.event_check.fast_path)
+			fast = step->regions.part[p];
 	}
-	fprintf(to,
-		"Tables: %ld bytes. Per step of each part at most %d crossings and %d splits; of all at most %ld "
-		"multiplications.\n",
-		bytes, MAX_EVENTS, MAX_SPLITS, most);
+	if (fast)
+		fprintf(to, "A step of a part that a bound shows to be free of events is one matrix product; up to %d "
+			    "crossings that are certain are computed by Taylor polynomials; the search does all other "
+			    "steps.\n", MOST_FAST_PATH);
 }
 
 void text_regions(FILE *to, const struct step *step)
 {
 	(step->regions.parts ? text_parts : text_of_one_part)(to, step);
+	text_region_number(to, step->shown->model->switching->functions);
+}
+
+static void text_list_of_part(FILE *to, const struct switching *all, int index)
+{
+	const struct region_part *part = &all->part[index];
+	const struct switching *s = part->model->switching;
+	for (int r = 0; r < s->regions && s->functions > 0; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "    part %d: %d of the region's number", index, share_of_region(part, all, r));
+			text_intervals(to, s, r);
+		}
+}
+
+static void text_list(FILE *to, const struct switching *s)
+{
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible) {
+			fprintf(to, "    region %d", r % regions_at_once(s));
+			text_intervals(to, s, r);
+		}
+}
+
+void text_region_list(FILE *to, const struct step *step)
+{
+	const int parts = step->regions.parts;
+	long bytes = refresh_bytes(step) + (parts ? 0 : bytes_of_regions(step));
+	long most = parts ? 0 : most_of_regions(step);
+	if (!parts)
+		text_list(to, step->shown->model->switching);
+	for (int p = 0; p < parts; p++) {
+		text_list_of_part(to, step->model->switching, p);
+		bytes += bytes_of_regions(step->regions.part[p]);
+		most += most_of_regions(step->regions.part[p]);
+	}
+	fprintf(to,
+		"Tables: %ld bytes. Per step%s at most %d crossings and %d splits; at most %ld multiplications%s.\n",
+		bytes, parts ? " of each part" : "", parts ? MAX_EVENTS : max_events(step->model),
+		parts ? MAX_SPLITS : max_splits(step->model), most, parts ? " of all" : "");
 }
 
 /* ---- JSON ---- */

@@ -154,3 +154,11 @@ const char *rising_text(const struct series_switching *d)
 {
 	return breakpoints_text(d->breaks, (const mpq_t *)rising_breakpoints(d));
 }
+
+const char *two_digits(double count)
+{
+	double unit = 1;
+	while (count / unit >= 99.5)
+		unit *= 10;
+	return format("%.0f", floor(count / unit + 0.5) * unit);
+}

@@ -24,6 +24,7 @@ struct picture_look;
 const char *pole_text(const struct pole_report *report);
 /* the pole, in so many columns; frequency, damping */
 const char *pole_row(const struct pole_report *report, int width);
+const char *two_digits(double count);                       /* 5200, of 5234 */
 double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */
 const char *irrationals_text(const struct irrationals *used); /* a sentence; NULL: there are none */
@@ -46,6 +47,10 @@ const char *unit_of_listed(const struct step *step, enum listed kind, int index)
 const char *labelled(const struct model *model, const char *name); /* of an output or input, as at an axis: f [kN] */
 const char *units_text(const struct step *step);            /* a sentence; NULL: none are written */
 void json_units(FILE *to, const struct step *step);          /* a member of an object, where some are */
+
+/* ---- course.c: what a step does, in sentences that the C has, too ---- */
+
+void text_scheme(FILE *to, const struct step *step);
 
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 
@@ -72,27 +77,22 @@ void json_reach(FILE *to, const struct step *step);
 
 /* ---- regions.c: formulas that the state chooses ---- */
 
-/* What rubs, a line each, and where it sticks: its expression, and the interval of that */
-const char *frictions_text(const struct switching *s, const char *indent);
 void text_regions(FILE *to, const struct step *step);       /* of a model of straight pieces */
+void text_region_list(FILE *to, const struct step *step);    /* each of them, and what their tables take */
 void json_regions(FILE *to, const struct step *step);        /* members of an object */
 void text_series_switching(FILE *to, const struct step *step); /* of a series */
 void json_series_switching(FILE *to, const struct step *step); /* members of an object */
 
 /* ---- contacts.c: what is held beside a series, and what strikes ---- */
 
-const char *contact_text(const struct step *step, int hold);  /* friction, and where it sticks */
 void text_contacts(FILE *to, const struct step *step);
+void text_impact_rules(FILE *to, const struct model *model); /* of several at one instant, of bounces that end */
 void json_contacts(FILE *to, const struct step *step);
 
 /* ---- modes.c: steps in normal modes ---- */
 
-const char *operators_of_modes(const struct step *step);    /* whose modes they are */
-const char *exact_in_modes(const struct step *step);
-const char *course_of_modes(const struct step *step);       /* which way a step goes */
-const char *stability_of_modes(const struct step *step);
-int  numbers_of_modes(const struct step *step);             /* in its tables, at most */
-void text_normal(FILE *to, const struct step *step);
+void text_normal(FILE *to, const struct step *step);        /* what is exact, which way a step goes, its stability */
+void text_frequencies(FILE *to, const struct step *step);
 void json_normal(FILE *to, const struct step *step);         /* a member of an object */
 void program_normal(FILE *to, const struct step *step);
 
@@ -270,6 +270,8 @@ void print_page(FILE *to, const struct step *step, const char *options, const st
 void explain_program(FILE *to, const struct step *step);    /* what a step does, before it is C */
 
 void explain_text(FILE *to, const struct step *step);
+void text_written(FILE *to, const struct step *step);       /* the equations as written */
+void text_linear_part(FILE *to, const struct step *step);   /* B(s) and its poles */
 void text_equations(FILE *to, const struct step *step);     /* as written, and what a network or an assembly means */
 void text_course(FILE *to, const struct step *step);        /* what is exact, and what is done with what is not */
 void text_cost(FILE *to, const struct step *step);          /* and how far a step may be off */

@@ -225,14 +225,6 @@ double instructions_of(const struct step *step, struct operations of)
 	       each->step;
 }
 
-const char *two_digits(double count)
-{
-	double unit = 1;
-	while (count / unit >= 99.5)
-		unit *= 10;
-	return format("%.0f", floor(count / unit + 0.5) * unit);
-}
-
 double instructions_of_program(const struct step *step)
 {
 	const struct program *program = step->program;
@@ -287,20 +279,6 @@ void count_regions(struct step *step, int multiplications, int additions)
 	program->forcing_additions = functions.additions;
 	program->multiplications = multiplications + functions.multiplications;
 	program->additions = additions + functions.additions;
-}
-
-/* ---- tables ---- */
-
-int refresh_numbers(const struct step *step)
-{
-	const struct refresh *a = step->refresh;
-	return a ? a->steps * a->terms * (step->program->compensated ? 2 : 1) : 0;
-}
-
-int row_numbers(const struct step *step)
-{
-	const struct rows *rows = step->rows;
-	return rows ? (rows->columns + step->branch->system.inputs) * rows->count * rows->outputs : 0;
 }
 
 /* ---- the count of a program of actions ---- */

@@ -26,9 +26,6 @@ double cost_of_step(const struct step *step, const struct target *target);
 struct operations { double multiplications, additions, calls, forcings, waits, pieces, events, terms; };
 double instructions_of(const struct step *step, struct operations of); /* of a Cortex-M4 */
 double instructions_of_program(const struct step *step);     /* by its program, without refreshes */
-const char *two_digits(double count);                       /* 5200, of 5234 */
 void count_peaks(struct step *step);                        /* after its program and layout */
-int refresh_numbers(const struct step *step);               /* of the table for steps between refreshes */
-int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
 
 #endif

@@ -143,7 +143,10 @@ facts_of() {
 		/ 3 stages, of order 5/ { few = "yes" }
 		/^ \* / { banner = banner substr($0, 3) }
 		/status says PL_INACCURATE/ { may = "PL_INACCURATE" }
-		/^ \*     switching function [0-9]+: .*, at / { sub(/.*, at /, ""); regions *= split($0, at, ",") + 1 }
+		/^ \*     switching function [0-9]+: .*[,;] breakpoints / {
+			sub(/.* breakpoints /, "")
+			regions *= split($0, at, ",") + 1
+		}
 		/are kept apart from relative coordinates:/ && !lists++ {
 			sub(/;.*/, "")
 			apart = $0 " "

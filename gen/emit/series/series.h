@@ -20,7 +20,6 @@ struct recurrences *series_new(const struct emitter *e);          /* under the n
 /* What the values are summed from of what the search of events looks at, into target[] */
 void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target);
 void emit_series_tape(const struct emitter *e, const struct recurrences *r);
-bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
 

@@ -3,7 +3,8 @@
  * rows from loads and inputs into outputs (static correction: Craig and Kurdila 2006, 11.4, for loads at their own
  * frequencies). Numbers of modes are dyadic rationals of a precision, and exact from here on. */
 #include "inner.h"
-
+#include "model/building.h"
+#include "model/checks.h"
 
 /* ---- the states of a model of modes ---- */
 
@@ -387,6 +388,29 @@ static void put_listed(struct modes *modes, bool *kept, const struct wanted_mode
 		if (modes->mode[i].rigid && modes->mode[i].seen && !kept[i])
 			error(wanted->at, "a rigid-body mode is never dropped where an output sees it",
 			      "mode %d is rigid and seen by an output: it has to be kept", modes->mode[i].number);
+}
+
+/* The statement `modes`, or --modes in its place */
+void evaluate_modes(void *context)
+{
+	struct building *b = context;
+	struct wanted_modes *wanted = &b->model->modes;
+	struct mode_list list = b->spec->modes;
+	if (b->request->modes)
+		list = parse_mode_list(b->spec, source_argument(b->request->modes));
+	if (!list.at.source)
+		abandon();
+	if (b->spec->ranges > 0)
+		error(b->spec->range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
+	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, list.count), list.each,
+					 !list.without_static };
+	for (int i = 0; i < list.count; i++) {
+		wanted->number[i] = whole_number(b, list.number[i], 1, LIMIT_STATES,
+						 list.each ? "the number of a mode" : "a count of modes");
+		for (int j = 0; j < i; j++)
+			if (wanted->number[j] == wanted->number[i])
+				error(list.number[i]->start, NULL, "mode %d is in the list already", wanted->number[i]);
+	}
 }
 
 struct truncated { struct model *model, *shorter; };

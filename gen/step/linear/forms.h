@@ -39,6 +39,7 @@ struct refresh {                    /* load states at a refresh, and tables for 
 
 void check_refresh(struct step *step);                      /* says where they are asked for in vain */
 void plan_refresh(struct step *step);                       /* after its table */
+int refresh_numbers(const struct step *step);               /* in the table for the steps between */
 void fill_refresh(struct step *step);                       /* after its forced part is chosen */
 int refreshed_term(const struct step *step, int state, int column);  /* its index; -1: it is none */
 

@@ -388,3 +388,9 @@ void fill_refresh(struct step *step)
 	for (int b = 0; b < blocks; b++)
 		fill_block(step, &block[b], turn);
 }
+
+int refresh_numbers(const struct step *step)
+{
+	const struct refresh *a = step->refresh;
+	return a ? a->steps * a->terms * (step->program->compensated ? 2 : 1) : 0;
+}

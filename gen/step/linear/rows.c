@@ -324,3 +324,9 @@ void plan_rows(struct step *step)
 		step->no.rows = requested->rows ? format("%d are too many for it", wish)
 					    : "they would not be faster, or leave the range";
 }
+
+int row_numbers(const struct step *step)
+{
+	const struct rows *rows = step->rows;
+	return rows ? (rows->columns + step->branch->system.inputs) * rows->count * rows->outputs : 0;
+}

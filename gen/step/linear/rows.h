@@ -23,6 +23,7 @@ struct rows {
 };
 int  held_columns(const struct linear *system);              /* ramps: the samples before the block */
 void plan_rows(struct step *step);                           /* step->rows; last, since it is a step of its own */
+int row_numbers(const struct step *step);                   /* of the tables of a block of rows */
 
 /* ---- peaks.c: outputs of which the largest size is asked for ---- */
 

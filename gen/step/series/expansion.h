@@ -94,6 +94,10 @@ bool is_symmetric_system(const struct linear_equations *e);
 /* first[n + 1]: where the columns before row i of its factors begin in the list that is returned */
 int *factor_columns(const struct linear_equations *e, int *first);
 
+/* ---- slope.c: the derivative of a state ---- */
+
+struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
+
 /* ---- expansion.c: the solution as a Taylor series ---- */
 
 struct expansion *expansion_of(const struct step *step, int order);
@@ -101,7 +105,6 @@ struct expansion *expansion_of(const struct step *step, int order);
 struct expansion *expansion_with_forces(const struct step *step, int order);
 struct expansion *part_of_expansion(const struct step *step, const struct expansion *full, int order, int columns,
 				    int *column);
-struct sum slope_of_state(struct sequencing *w, int state);  /* without friction and contacts */
 
 /* ---- order.c: the order of a series ---- */
 

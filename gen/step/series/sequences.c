@@ -79,12 +79,11 @@ int sum_sequence(struct sequencing *w, const struct sum *sum)
 
 /* ---- operands ---- */
 
-/* One sequence and nothing else; NONE: it is more */
-static int only_sequence(const struct sum *sum)
+int sequence_of_sum(struct sequencing *w, const struct sum *sum)
 {
 	const struct key *key = sum->key;
 	bool plain = sum->keys == 1 && key->kind == TERM_SEQUENCE && mpq_cmp_ui(key->factor, 1, 1) == 0;
-	return plain ? key->a : NONE;
+	return plain ? key->a : sum_sequence(w, sum);
 }
 
 int sequence_of_form(struct sequencing *w, const struct form *form)
@@ -95,38 +94,31 @@ int sequence_of_form(struct sequencing *w, const struct form *form)
 			return w->operand[i].sequence;
 	RATIONAL one = RATIO(1, 1);
 	sum_add_form(w, &sum, form, one);
-	int only = only_sequence(&sum), made = only != NONE ? only : sum_sequence(w, &sum);
+	int made = sequence_of_sum(w, &sum);
 	ENLARGE(w->operand, (size_t)w->operands + 1);
 	w->operand[w->operands].form = form;
 	w->operand[w->operands++].sequence = made;
 	return made;
 }
 
-int sequence_of_sum(struct sequencing *w, const struct sum *sum)
-{
-	int only = only_sequence(sum);
-	return only != NONE ? only : sum_sequence(w, sum);
-}
-
-static struct sum single_key(enum term_kind kind, int a, int b)
+/* A sum of one term */
+static int single_sequence(struct sequencing *w, enum term_kind kind, int a, int b, long sign)
 {
 	struct sum sum = { 0 };
-	RATIONAL one = RATIO(1, 1);
-	sum_add(&sum, kind, a, b, one);
-	return sum;
+	RATIONAL factor = ZERO;
+	mpq_set_si(factor, sign, 1);
+	sum_add(&sum, kind, a, b, factor);
+	return sum_sequence(w, &sum);
 }
 
 int minus_sequence(struct sequencing *w, int a)
 {
-	struct sum sum = single_key(TERM_SEQUENCE, a, 0);
-	mpq_neg(sum.key->factor, sum.key->factor);
-	return sum_sequence(w, &sum);
+	return single_sequence(w, TERM_SEQUENCE, a, 0, -1);
 }
 
 static int product_sequence(struct sequencing *w, int a, int b)
 {
-	struct sum sum = single_key(TERM_PRODUCT, a < b ? a : b, a < b ? b : a);
-	return sum_sequence(w, &sum);
+	return single_sequence(w, TERM_PRODUCT, a < b ? a : b, a < b ? b : a, 1);
 }
 
 static int power_sequence(struct sequencing *w, int base, unsigned n)
@@ -292,7 +284,7 @@ static int root_sequence(struct sequencing *w, int a)
 static int pair_sequence(struct sequencing *w, int a, enum function first, enum function second, long sign,
 			 bool want_second)
 {
-	RATIONAL scale = ZERO, reversed = ZERO;
+	RATIONAL scale = ZERO;
 	for (int i = 0; i < w->x->count; i++) {
 		const struct sequence *s = &w->x->sequence[i];
 		if (s->kind == SEQUENCE_INTEGRAL && s->state == NONE && s->function == first && s->a == a)
@@ -301,8 +293,8 @@ static int pair_sequence(struct sequencing *w, int a, enum function first, enum 
 	int rate = derivative_of(w, a, scale);
 	int s = new_integral(w, first, a, NONE), c = new_integral(w, second, a, NONE);
 	set_product_integrand(w, s, rate, c, scale);
-	mpq_set_si(reversed, sign, 1);
-	mpq_mul(scale, scale, reversed);
+	if (sign < 0)
+		mpq_neg(scale, scale);
 	set_product_integrand(w, c, rate, s, scale);
 	return want_second ? c : s;
 }
@@ -320,12 +312,12 @@ static int self_sequence(struct sequencing *w, enum function function, int a, lo
 /* c' = sign a' / below */
 static int arc_sequence(struct sequencing *w, enum function function, int a, int below, long sign)
 {
-	RATIONAL scale = ZERO, reversed = ZERO;
+	RATIONAL scale = ZERO;
 	int rate = derivative_of(w, a, scale), quotient = quotient_sequence(w, rate, below);
 	int c = new_integral(w, function, a, NONE);
 	struct sum sum = { 0 };
-	mpq_set_si(reversed, sign, 1);
-	mpq_mul(scale, scale, reversed);
+	if (sign < 0)
+		mpq_neg(scale, scale);
 	sum_add(&sum, TERM_SEQUENCE, quotient, 0, scale);
 	set_integrand(w, c, &sum);
 	return c;
@@ -436,9 +428,7 @@ static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 {
 	const struct form *x = a->operand[0], *zero = form_number(0);
 	struct straight *piece;
-	mpq_t minus;
-	mpq_init(minus);
-	mpq_set_si(minus, -1, 1);
+	RATIONAL minus = RATIO(-1, 1);
 	switch (a->function) {
 	case FN_ABS:
 		return choice(w, a, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)),
@@ -467,7 +457,7 @@ static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 
 static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 {
-	int in_pieces = sequence_in_pieces(w, atom), b;
+	int in_pieces = sequence_in_pieces(w, atom);
 	if (in_pieces != NONE)
 		return in_pieces;
 	int a = sequence_of_form(w, atom->operand[0]);
@@ -484,9 +474,7 @@ static int sequence_of_call(struct sequencing *w, const struct atom *atom)
 	case FN_ATAN: return arc_sequence(w, FN_ATAN, a, one_and_square(w, a, 1), 1);
 	case FN_ASIN: return arc_sequence(w, FN_ASIN, a, root_sequence(w, one_and_square(w, a, -1)), 1);
 	case FN_ACOS: return arc_sequence(w, FN_ACOS, a, root_sequence(w, one_and_square(w, a, -1)), -1);
-	case FN_ATAN2:
-		b = sequence_of_form(w, atom->operand[1]);
-		return angle_sequence(w, a, b);
+	case FN_ATAN2: return angle_sequence(w, a, sequence_of_form(w, atom->operand[1]));
 	case FN_SLIDE:
 		error(atom->node->start,
 		      "with a small mass it has one; scheme exact takes it beside what is piecewise linear",
@@ -511,10 +499,10 @@ static int sequence_of_power(struct sequencing *w, const struct atom *atom)
 			mpq_mul(part, part, w->pi);
 		mpq_add(value, value, part);
 	}
-	struct sequence made = { .kind = SEQUENCE_POWER, .state = NONE, .a = base, .b = NONE };
-	made.exponent = equation_number(w->step->model, value).value;
-	bool half = mpq_cmp_ui(value, 1, 2) == 0;
-	return half ? root_sequence(w, base) : new_sequence(w, made);
+	if (mpq_cmp_ui(value, 1, 2) == 0)
+		return root_sequence(w, base);
+	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_POWER, .state = NONE, .a = base, .b = NONE,
+						  .exponent = equation_number(w->step->model, value).value });
 }
 
 static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
@@ -535,8 +523,7 @@ static int sequence_of_choice(struct sequencing *w, const struct atom *atom)
 /* What the instance holds: the same at all times */
 static int sequence_of_param(struct sequencing *w, const struct atom *atom)
 {
-	struct sum sum = single_key(TERM_PARAM, atom->param->tuning.number - 1, 0);
-	return sum_sequence(w, &sum);
+	return single_sequence(w, TERM_PARAM, atom->param->tuning.number - 1, 0, 1);
 }
 
 static int entry_sequence(struct sequencing *w, const struct form *form)
@@ -610,36 +597,4 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 			      sequence_of_constant(w, 1), sequence_of_constant(w, 0));
 	}
 	return w->atom[atom->index] = made;
-}
-
-/* y' of a state: its row of A, loads, inputs, and the remainder, whose linear terms may cancel */
-struct sum slope_of_state(struct sequencing *w, int state)
-{
-	const struct model *model = w->step->model;
-	const struct layout *layout = &w->layout;
-	mpq_t *row = w->slopes[0] + state * layout->size;
-	struct sum sum = { 0 };
-	for (int j = 0; j < layout->states; j++)
-		if (mpq_sgn(row[j]) != 0)
-			sum_add(&sum, TERM_SEQUENCE, j, 0, row[j]);
-	for (int i = 0; i < w->system->inputs; i++) {
-		if (mpq_sgn(row[layout->input[i]]) != 0)
-			sum_add(&sum, TERM_INPUT, i, 0, row[layout->input[i]]);
-		if (w->system->input[i].hold && mpq_sgn(row[layout->input[i] + 1]) != 0)
-			sum_add(&sum, TERM_SLOPE, i, 0, row[layout->input[i] + 1]);
-	}
-	for (int l = 0, column = 0; l < w->system->loads; column += w->system->load[l++].columns)
-		for (int j = 0; j < w->system->load[l].columns && layout->load[l] >= 0; j++) {
-			mpq_srcptr factor = row[layout->load[l] + j];
-			if (mpq_sgn(factor) == 0 || loads_change(w->system))
-				continue;
-			bool power = is_polynomial(w->system->load[l].forcing);
-			sum_add(&sum, power ? TERM_TIME : TERM_LOAD, power ? j : column + j, 0, factor);
-		}
-	for (int e = 0; e < w->system->force_columns; e++)
-		if (mpq_sgn(row[layout->force_column + e]) != 0 && w->x->force)
-			sum_add(&sum, TERM_SEQUENCE, w->x->force[e], 0, row[layout->force_column + e]);
-		else if (mpq_sgn(row[layout->force_column + e]) != 0)
-			sum_add_form(w, &sum, model->schedule.operator[0].left[e], row[layout->force_column + e]);
-	return sum;
 }
