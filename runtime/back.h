@@ -288,17 +288,22 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
                      , w == NULL ? NULL : w + row * PL_OUTPUTS, lam, pb
 #if PL_SEEDED
-                     , ub == NULL ? NULL : ub + row * PL_INPUTS
 #if PL_SLOPED
-                     , row == 0 ? held : ub == NULL ? NULL : ub + (row - 1) * PL_INPUTS
+                     , ub == NULL ? NULL : ub + (row + 1) * PL_INPUTS
+                     , row == 0 ? held : ub == NULL ? NULL : ub + row * PL_INPUTS
 #else
-                     , NULL
+                     , ub == NULL ? NULL : ub + row * PL_INPUTS, NULL
 #endif
 #endif
                      );
         ds->status |= b.alone.status | b.ds.status;
         top -= at[top] == row && top > 0;
     }
+#if PL_SLOPED
+    for (i = 0; i < PL_INPUTS && ub != NULL; i++) {
+        ub[i] += held[i];
+    }
+#endif
     for (p = 0; p < PL_DERIVATIVES; p++) {
 #if PL_SLOPED
         if (PL(d_input)[p] >= 0) { /* the sample before the first step moves as ds says */

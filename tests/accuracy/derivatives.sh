@@ -153,9 +153,10 @@ int main(void)
 {
 	const pl_model *m = &M(_model);
 	const pl_derivatives *d = &M(_derivatives);
-	const int n = m->states, P = d->columns;
-	double *u = room(ROWS * m->inputs), *ub = room(ROWS * m->inputs), *w = room(ROWS * m->outputs), *end = room(n);
-	double *ones = room(m->inputs), *pb = room(P), *forward = room(P), *size = room(P), *J = room(m->outputs * P);
+	const int n = m->states, P = d->columns, ahead = d->hold != NULL;
+	double *u = room(ROWS * m->inputs), *ub = room((ROWS + 1) * m->inputs), *w = room(ROWS * m->outputs);
+	double *end = room(n), *ones = room(m->inputs), *pb = room(P), *forward = room(P);
+	double *size = room(P), *J = room(m->outputs * P);
 	void *s = calloc(1, m->size), *ds = calloc(1, d->size), *slot = calloc(SLOTS, m->size);
 	int bad = 0, along = 0;
 	for (int i = 0; i < ROWS * m->inputs; i++) u[i] = noise();
@@ -198,8 +199,8 @@ int main(void)
 			down = cost(m, u, w, end);
 			*at = before;
 			printf("sample %d of %s: %.15g, backwards %.15g\n", k, m->input_names[i], (up - down) / 8,
-			       ub[k * m->inputs + i]);
-			bad = bad || fabs((up - down) / 8 - ub[k * m->inputs + i]) > 1e-10;
+			       ub[(k + ahead) * m->inputs + i]);
+			bad = bad || fabs((up - down) / 8 - ub[(k + ahead) * m->inputs + i]) > 1e-10;
 		}
 	return bad || along != m->inputs;
 }

@@ -466,4 +466,56 @@ direct = at_rest.C @ np.linalg.solve(2j * np.eye(3) - at_rest.A, at_rest.B)
 case('its stability', at_rest.stability == 'stable' and np.real(at_rest.poles).max() < 0, at_rest.stability)
 case('its response at 2 rad/s', np.abs(m.frf(2.0, at='rest') - direct).max() < 1e-14 and at_rest.at ==
      'linearised at rest: x = 0, y = 0', at_rest.at)
+# ---- derivatives, forwards and backwards: beside differences of runs, and of costs that are linear in the samples ----
+
+spec = """model derived
+param m = 2, k = 50, w = 4
+coord x, z
+init x = 0.01*m
+input u
+input r hold first
+m*x'' + 0.5*x' + k*(x - z) = 3*cos(w*t) + u
+z'' + k*z = r + 0.3*t
+output x, acc = x'', q = k*x + 2*u
+step 0.01
+"""
+random = np.random.default_rng(3)
+record, by = random.standard_normal((101, 2)), ['m', 'k', 'w', "x'", 'u', 'r']
+plain = Model(spec).run(record)
+m = Model(spec)
+y, J = m.run(record, jac=by)
+off = [abs((Model(spec, **{p: v + 1e-4}).run(record) - Model(spec, **{p: v - 1e-4}).run(record)) / 2e-4
+           - J[:, :, by.index(p)]).max() / abs(J[:, :, by.index(p)]).max() for p, v in (('m', 2), ('k', 50), ('w', 4))]
+case('jac: rows as without, derivatives within 1e-7 of differences', same(y, plain) and max(off) < 1e-7, off)
+first = Model(spec)
+pieces = [first.run(record[:41], jac=by)[1], first.run(record[41:], jac=by)[1]]
+case('jac: pieces put together are one run', same(np.concatenate(pieces), J))
+w = random.standard_normal(y.shape)
+m.reset()
+pb, ub = m.vjp(record, w, by, snapshots=5)
+forward = np.einsum('ri,rip->p', w, J)
+case('vjp: the sums of weighted derivatives, within 1e-12', np.allclose(pb, forward, rtol=1e-12), pb, forward)
+found = []
+for place in ((0, 0), (0, 1), (37, 0), (37, 1), (99, 0), (100, 1)):
+    other = record.copy()
+    other[place] += 1
+    found.append((((Model(spec).run(other) - plain) * w).sum(), ub[place]))
+case('vjp: by samples, as costs differ', np.allclose(*np.array(found).T, rtol=1e-10), found)
+try:
+    from scipy.optimize import least_squares
+    ring = 'model ring\nparam k = 40, c = 0.5\ncoord x\ninit x = 0.02\n2*x\'\' + c*x\' + k*x = 0\noutput x\nstep 0.02\n'
+    measured, names, m = Model(ring, k=50, c=0.8).run(150), ['k', 'c'], Model(ring)
+
+    def moved(p):
+        m.retune(**dict(zip(names, p)))
+        m.reset()
+        return m.run(len(measured) - 1, jac=names)
+
+    fitted = least_squares(lambda p: moved(p)[0] - measured, [40, 0.5], jac=lambda p: moved(p)[1], x_scale='jac')
+    case('least_squares on jac', np.allclose(fitted.x, [50, 0.8], rtol=1e-7), fitted)
+except ImportError:
+    print('skip least_squares: no SciPy')
+refuses('jac without a statement', 'derived: its spec has no statement `sensitivity`: jac=["k", "x"]',
+        lambda: Model(spec).run(record, jac=True))
+
 print('end')

@@ -24,6 +24,7 @@ import numpy as np
 
 from . import _code
 from ._code import VERSION, Code, Compiler, Error, Params, Units, Value
+from ._derivatives import Derivatives
 from ._linear import Linear, StateSpace, StateSpaces
 
 __all__ = ['Model', 'Error', 'RunError', 'StateSpace', 'VERSION']
@@ -51,7 +52,7 @@ class RunError(Error):
         self.rows, self.t, self.status = rows, t, status
 
 
-class Model(Linear):
+class Model(Linear, Derivatives):
     """A model at a point of its motion; it begins at t = 0 with the spec's initial values.
 
     spec     a path, or, with a line's end in it, the text of a spec
@@ -85,12 +86,16 @@ class Model(Linear):
         self._lanes: Any = None
         self._t: Any = np.empty(0)
         self._tail: np.ndarray | None = None
+        self._by: str | None = None             # what derivatives are by, and these
+        self._moved: np.ndarray | None = None
         self._build({**(params or {}), **more}, step)
 
     # ---- making it ----
 
     def _plgen(self, given: Mapping[str, Value], step: Value | None, extra: Sequence[str] = ()) -> tuple[str, str]:
         argv = [_code.find_plgen(), '--fast'] + self._options + list(extra)
+        if self._by:
+            argv += ['--sensitivity', self._by]
         if step is not None:
             argv += ['--step', _code.expression(step)]
         for name, value in given.items():
@@ -133,6 +138,7 @@ class Model(Linear):
         other.__dict__.update(self.__dict__)
         other._memory = self._memory.copy()
         other._state = ctypes.c_void_p(other._memory.ctypes.data)
+        other._moved = None if self._moved is None else self._moved.copy()
         other._tuned, other._given, other._told = self._tuned.copy(), dict(self._given), dict(self._told)
         return other
 
@@ -255,7 +261,7 @@ class Model(Linear):
 
     def _begin(self) -> None:
         """The next record starts at its row 0."""
-        self._fresh, self._tail = True, None
+        self._fresh, self._tail, self._moved = True, None, None
         self._t = np.empty(0, dtype=self.dtype)
 
     def _vector(self, values: Any, size: int, what: str) -> np.ndarray:
@@ -281,7 +287,7 @@ class Model(Linear):
         """One step, u a sample of the inputs as NAME_step takes it; returns the outputs."""
         u = self._sample(u)
         self._code.model.step(self._state, None if u is None else u.ctypes.data)
-        self._fresh, self._tail = False, None
+        self._fresh, self._tail, self._moved = False, None, None
         if self.status:
             raise RunError(self._trouble(self.status), np.empty((0, len(self.outputs)), self.dtype),
                            np.empty(0, self.dtype), self.status)
@@ -301,7 +307,7 @@ class Model(Linear):
         if n < 0:
             raise ValueError('a jump goes forward')
         self._code.model.jump(self._state, int(n))
-        self._fresh = False
+        self._fresh, self._moved = False, None
 
     def at(self, tau: float, u: Any = None) -> np.ndarray:
         """The states tau after now, 0 <= tau <= h: NAME_at."""
@@ -358,22 +364,8 @@ class Model(Linear):
                             for i, a in enumerate(c.ahead)], dtype=self.dtype)
             c.model.hold(self._state, row.ctypes.data)
 
-    def run(self, u: Any, *, out: np.ndarray | None = None, start: bool | None = None,
-            blocks: bool = False) -> np.ndarray:
-        """Steps; returns rows x outputs (of one output: its rows, unless squeeze=False), and t has their times.
-
-        u      how many steps; of a model with inputs a record: rows x inputs, rows alone of one input, or a dict of
-               columns by name. Row k is the sample at t = k h: n steps take n rows, n + 1 where an input is a ramp (n +
-               m with hold third ...)
-        out    where to put the rows: an array of the right shape and type
-        start  True: the record starts now, and the first row of the result is now, so there are n + 1. False: it goes
-               on from the run before, n rows; so pieces put together are one run. By default True for a new model and
-               after reset and set, else False
-        blocks True: by NAME_run, which is faster where it takes many steps at once (api.md); rounding is then its own,
-               and depends on where pieces begin
-
-        RunError, with the rows so far, where a step leaves the finite numbers or its bounds."""
-        first = int(self._fresh if start is None else start)
+    def _request(self, u: Any, first: int) -> tuple[np.ndarray | None, int, np.ndarray | None]:
+        """Of what run takes: samples as steps take them, how many steps, and the record"""
         if self.inputs:
             if isinstance(u, (int, np.integer)):
                 raise ValueError('the model has inputs, run() takes their samples: ' + ', '.join(self.inputs))
@@ -387,6 +379,33 @@ class Model(Linear):
             if n != u or n < 0:
                 raise ValueError('expected a number of steps, found {}'.format(u))
             u = None
+        return u, n, record
+
+    def run(self, u: Any, *, out: np.ndarray | None = None, start: bool | None = None,
+            blocks: bool = False, jac: Any = None) -> Any:
+        """Steps; returns rows x outputs (of one output: its rows, unless squeeze=False), and t has their times.
+
+        u      how many steps; of a model with inputs a record: rows x inputs, rows alone of one input, or a dict of
+               columns by name. Row k is the sample at t = k h: n steps take n rows, n + 1 where an input is a ramp (n +
+               m with hold third ...)
+        out    where to put the rows: an array of the right shape and type
+        start  True: the record starts now, and the first row of the result is now, so there are n + 1. False: it goes
+               on from the run before, n rows; so pieces put together are one run. By default True for a new model and
+               after reset and set, else False
+        blocks True: by NAME_run, which is faster where it takes many steps at once (api.md); rounding is then its own,
+               and depends on where pieces begin
+        jac    names of params, of states (by their initial values), of inputs (by an offset), or True for those of the
+               statement `sensitivity`: returns rows and their derivatives, rows x outputs x names
+
+        RunError, with the rows so far, where a step leaves the finite numbers or its bounds."""
+        first = int(self._fresh if start is None else start)
+        if jac is not None and jac is not False:
+            if out is not None or blocks:
+                raise ValueError('jac: without out and blocks')
+            self._derive(jac)
+            return self._run_d(u, first)
+        self._moved = None
+        u, n, record = self._request(u, first)
         rows = self._room(out, n + first)
         if record is not None:
             self._keep(record)
@@ -437,10 +456,12 @@ class Model(Linear):
                 self._memory[:] = before
                 good = c.rows(self._state, count, *where, self.t[first + done:].ctypes.data, 1)
                 if good < count:
-                    end = first + done + good
-                    self._t = self._t[:end]
-                    raise RunError(self._trouble(self.status), self._narrow(rows[:end]), self._t, self.status)
+                    self._fail(rows, first + done + good)
             done += count
+
+    def _fail(self, rows: np.ndarray, end: int) -> None:
+        self._t = self._t[:end]
+        raise RunError(self._trouble(self.status), self._narrow(rows[:end]), self._t, self.status)
 
     def _trouble(self, status: int) -> str:
         said = [text for bit, text in STATUS if status & bit] or ['status {}'.format(status)]

@@ -186,6 +186,24 @@ size_t plgen_rows(void *s, size_t n, const {real} *u, {real} *out, {real} *t, in
 }}
 """
 
+# Behind a code with derivatives: n steps with those of the outputs; du: by an offset of each input
+LOOP_D = """
+size_t plgen_rows_d(void *s, void *ds, size_t n, const {real} *u, const {real} *du, {real} *out, {real} *t, {real} *J)
+{{
+    const size_t inputs = (size_t){name}_model.inputs, outputs = (size_t){name}_model.outputs;
+    size_t k;
+    for (k = 0; k < n; k++) {{
+        {name}_derivatives.step(s, ds, u ? u + k * inputs : 0, du);
+        if ({name}_model.status && {name}_model.status(s))
+            return k;
+        {name}_model.out(s, out + k * outputs);
+        t[k] = {name}_model.time(s);
+        {name}_derivatives.out(s, ds, J + k * outputs * (size_t){name}_derivatives.columns);
+    }}
+    return n;
+}}
+"""
+
 # NAME_batch over `count` instances, each with params of its own; now: the outputs at the start, out: after each step
 LANES = """
 void plgen_lanes(size_t count, size_t n, const {real} *params, {real} h, const {real} *u, const {real} *first,
@@ -238,6 +256,21 @@ def _descriptor(real: type) -> type[ctypes.Structure]:
     return Descriptor
 
 
+def _derivatives(real: Any) -> type[ctypes.Structure]:
+    """pl_derivatives or pl_derivativesf of plreal.h"""
+    p, size, count = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
+    call: Any = ctypes.CFUNCTYPE
+
+    class Derivatives(ctypes.Structure):
+        _fields_ = [('size', size), ('columns', count), ('names', ctypes.POINTER(ctypes.c_char_p)),
+                    ('init', call(None, p, p)), ('step', call(None, p, p, p, p)), ('out', call(None, p, p, p)),
+                    ('hold', call(None, p, p)), ('status', call(ctypes.c_uint, p)),
+                    ('by', ctypes.POINTER(real * 4)),
+                    ('gradient', call(size, p, p, size, p, p, p, p, p, p, size))]
+    return Derivatives
+
+
+_DERIVATIVES = {False: _derivatives(ctypes.c_double), True: _derivatives(ctypes.c_float)}
 _DESCRIPTOR = {False: _descriptor(ctypes.c_double), True: _descriptor(ctypes.c_float)}
 
 
@@ -292,7 +325,8 @@ class Code:
 
     def load(self, compiler: Compiler) -> Code:
         self.dtype = np.dtype(np.float32 if self.single else np.float64)
-        self.library = self._loaded(compiler, self.text + LOOP.format(**self._words()))
+        loops = LOOP + (LOOP_D if '\nextern const pl_derivatives' in self.text else '')
+        self.library = self._loaded(compiler, self.text + loops.format(**self._words()))
         path = self.library._name
         head = (ctypes.c_int * 2).in_dll(self.library, self.name + '_model')
         if head[0] != VERSION or head[1] != self.dtype.itemsize:
@@ -309,7 +343,22 @@ class Code:
         self._read_units(m)
         self.ahead = [m.start_samples[i] for i in range(m.inputs)]
         self.most = max(self.ahead, default=0)
+        self._read_derivatives()
         return self
+
+    def _read_derivatives(self) -> None:
+        """derivatives: None, or NAME_derivatives. columns: names; per: one of each param's own unit in SI units"""
+        self.derivatives = d = None if not hasattr(self.library, 'plgen_rows_d') else \
+            _DERIVATIVES[self.single].in_dll(self.library, self.name + '_derivatives')
+        if d is None:
+            return
+        self.columns = tuple(d.names[i].decode() for i in range(d.columns))
+        self.per = np.array([d.by[i][1] for i in range(d.columns)])
+        self.set_d = getattr(self.library, self.name + '_set_d')
+        self.set_d.argtypes, self.set_d.restype = [ctypes.c_void_p, ctypes.c_void_p], None
+        self.rows_d = self.library.plgen_rows_d
+        self.rows_d.restype = ctypes.c_size_t
+        self.rows_d.argtypes = [ctypes.c_void_p] * 2 + [ctypes.c_size_t] + [ctypes.c_void_p] * 5
 
     def _read_units(self, m: Any) -> None:
         """NAME_units, which a model without units has not. factors: of the own units of params in SI units"""
