@@ -49,28 +49,47 @@ awk -v into=cases/ -v rest=jury -f "$root/tests/cases.awk" "$root"/tests/jury/*.
 
 # key NAME WORD: what stands behind the word in NAME.jury
 key() {
-	sed -n "s/^$2 //p" "$here/$1.jury"
+	while read -r word rest; do
+		[ "$word" != "$2" ] || printf '%s\n' "$rest"
+	done <"$here/$1.jury"
+}
+
+# has NAME WORD...: whether a line begins with one of the words
+has() {
+	name=$1
+	shift
+	while read -r word rest; do
+		case " $* " in *" $word "*) return 0 ;; esac
+	done <"$here/$name.jury"
+	return 1
 }
 
 # link NAME: to the file in which it stands
+awk '/^=== / { sub(/.*\//, "", FILENAME); print $2, FILENAME }' "$root"/tests/jury/*.cases >topics
 link() {
-	topic=$(grep -l "^=== $1\$" "$root"/tests/jury/*.cases)
-	echo "[$1](../tests/jury/${topic##*/})"
+	while read -r name topic; do
+		[ "$name" != "$1" ] || echo "[$1](../tests/jury/$topic)"
+	done <topics
 }
 
-# run_c NAME SCHEME: rows.csv of the compiled C, or status 2 where plgen refuses the scheme
+# run_c NAME SCHEME: rows_SCHEME.csv of the compiled C, or status 2 where plgen refuses the scheme
 run_c() {
 	# shellcheck disable=SC2086
 	"$PLGEN" --fast --scheme "$2" --prefix judged $options "$here/$1.spec" >judged.c 2>log || return 2
-	$run_cc -I"$root/runtime" -DMODEL=judged "$root/runtime/host/plmain.c" judged.c "$archive" -lm -o judged \
-		>>log 2>&1 && ./judged "$end" >rows.csv 2>>log
+	[ -e plmain.o ] || $run_cc -I"$root/runtime" -DMODEL=judged -c "$root/runtime/host/plmain.c" -o plmain.o ||
+		return 1
+	$run_cc -I"$root/runtime" plmain.o judged.c "$archive" -lm -o judged >>log 2>&1 &&
+		./judged "$end" >"rows_$2.csv" 2>>log
 }
 
 # fewest_of FILE: `PUBLISHED REACHED` of what judge.awk has written: the fewest digits published, and `all` where each
-# value has all of its own, else the fewest
+# value has all of its own, else the fewest; values that are not reached in full to `log`
 fewest_of() {
 	awk 'NR == 1 || $3 < published { published = $3 }
 		$4 < ($3 < 15 ? $3 : 15) && (!short++ || $4 < fewest) { fewest = $4 }
+		$4 < 15 && $4 < $3 {
+			print "t = " $1 ": " $2 " = " $6 ", published " $5 ": " $4 " of " $3 " digits" >>"log"
+		}
 		END { print published + 0, NR == 0 ? 0 : short ? fewest : "all" }' "$1"
 }
 
@@ -79,12 +98,16 @@ end_of() {
 	awk '$1 == "at" && (!any++ || $2 + 0 > last + 0) { last = $2 } END { print last }' "$here/$1.jury"
 }
 
-# stated NAME COLUMN: what the page says of the case
+# stated NAME SCHEME: what the page says of the case
+awk -F '|' 'match($2, /^\[[^]]*\]\(/) {
+	gsub(/ /, "")
+	print substr($2, 2, RLENGTH - 3), $5, $6, $7, $8
+}' "$page" >page_cells
 stated() {
-	awk -F '|' -v name="[$1]" -v column="$2" 'index($2, name "(") {
-		gsub(/ /, "", $column)
-		print $column
-	}' "$page"
+	# shellcheck disable=SC2034
+	while read -r name exact taylor radau auto; do
+		[ "$name" != "$1" ] || eval "echo \$$2"
+	done <page_cells
 }
 
 # kept STATED FOUND: whether as much is reached as is stated
@@ -97,33 +120,22 @@ kept() {
 	esac
 }
 
-# tell_short: the values of judged.txt that are not reached in full, to `log`
-tell_short() {
-	awk '$4 < 15 && $4 < $3 {
-		print "t = " $1 ": " $2 " = " $6 ", published " $5 ": " $4 " of " $3 " digits"
-	}' judged.txt >>log
-}
-
 # one_scheme NAME SCHEME: sets `cell`, the digits reached or `-`, and `published`
 one_scheme() {
 	cell=-
 	: >log
-	if key "$1" without | grep -q "^$2:"; then
-		return
-	fi
+	case $(key "$1" without) in *"$2: "*) return ;; esac
 	run_c "$1" "$2"
 	case $? in
 		0) ;;
 		2) return ;;
 		*) echo "its C does not run to the end" >>log; cell=0; return ;;
 	esac
-	cp rows.csv "rows_$2.csv"
-	awk -v spare="$spare" -f "$root/tests/jury/judge.awk" "$here/$1.jury" rows.csv >judged.txt
+	awk -v spare="$spare" -f "$root/tests/jury/judge.awk" "$here/$1.jury" "rows_$2.csv" >judged.txt
 	# shellcheck disable=SC2046
 	set -- "$1" "$2" $(fewest_of judged.txt)
 	published=$3
 	cell=$4
-	tell_short
 }
 
 # poles_of NAME: its natural frequencies against those published
@@ -141,18 +153,15 @@ poles_of() {
 	set -- "$1" $(fewest_of judged.txt)
 	published=$2
 	cell=$3
-	tell_short
 }
 
 # by_plrun NAME: plrun by itself has the rows of the C of the scheme that plgen chooses
 by_plrun() {
 	# shellcheck disable=SC2086
-	scheme=$("$PLGEN" --explain=json $options "$here/$1.spec" 2>/dev/null |
-		sed -n 's/^ *"scheme": "\([a-z]*\).*/\1/p')
+	scheme=$("$PLGEN" --fast $options "$here/$1.spec" 2>/dev/null | sed -n 's/^ \* Scheme \([a-z]*\).*/\1/p')
 	# shellcheck disable=SC2086
 	"$plrun" $options "$here/$1.spec" "$end" >plrun.csv 2>log || return 1
 	[ -s "rows_$scheme.csv" ] || run_c "$1" "$scheme" || return 1
-	[ -s "rows_$scheme.csv" ] || cp rows.csv "rows_$scheme.csv"
 	cut -d , -f 2- plrun.csv >plrun_outputs
 	cut -d , -f 2- "rows_$scheme.csv" | cmp - plrun_outputs >>log 2>&1
 }
@@ -160,15 +169,6 @@ by_plrun() {
 # refusal NAME: what plgen says of it
 refusal() {
 	"$PLGEN" "$here/$1.spec" 2>&1 >/dev/null | sed -n 's/.*: error: //p' | head -n 1
-}
-
-column_of() {
-	case $1 in
-		exact) echo 5 ;;
-		taylor) echo 6 ;;
-		radau) echo 7 ;;
-		auto) echo 8 ;;
-	esac
 }
 
 # try NAME: its lines as TAP; sets `options` and `end` of the case
@@ -187,7 +187,7 @@ try() {
 	line=
 	for scheme in exact taylor radau auto; do
 		cell=-
-		if ! grep -q '^hertz\|^rad' "$here/$1.jury"; then
+		if ! has "$1" hertz rad; then
 			one_scheme "$1" $scheme
 		elif [ $scheme = exact ]; then
 			poles_of "$1"
@@ -196,14 +196,14 @@ try() {
 		told "$1" $scheme
 	done
 	echo "$published$line" >"cells_$1"
-	[ "$mode" = --page ] || grep -q '^hertz\|^rad' "$here/$1.jury" && return
+	[ "$mode" = --page ] || has "$1" hertz rad && return
 	by_plrun "$1"
 	result $? "$1: plrun has the rows of the C"
 }
 
 # told NAME SCHEME: `cell` against the page and what the case asks for
 told() {
-	want=$(stated "$1" "$(column_of "$2")")
+	want=$(stated "$1" "$2")
 	[ "$cell" != - ] || [ "$want" != - ] || return 0
 	echo "the page says '$want', found '$cell'" >>log
 	kept "$want" "$cell" && { [ "$cell" = all ] || [ -n "$(key "$1" short)" ]; }
@@ -289,8 +289,8 @@ spare=1
 [ "$mode" != --page ] || spare=2
 for name in $(cases); do
 	chosen "$name" || continue
-	[ "$mode" = --page ] || long || ! grep -q '^long$' "$here/$name.jury" || continue
-	[ "$mode" = --page ] || merging || ! grep -q '^merge$' "$here/$name.jury" || continue
+	[ "$mode" = --page ] || long || ! has "$name" long || continue
+	[ "$mode" = --page ] || merging || ! has "$name" merge || continue
 	try "$name" >>tried
 done
 print_page >page
