@@ -316,6 +316,32 @@ static void add_energy(struct building *b, const struct energy *energy, struct s
 		add_gradient(b, form, form_number(1), energy->kind == 'D', force);
 }
 
+static void add_where(struct form **to, struct form **from, int first, int end)
+{
+	for (int j = first; j < end; j++)
+		if (from[j])
+			add_to(&to[j], from[j], NULL);
+}
+
+/* Of a derivative: into the equations of the coordinates' derivatives. Of a constraint its own multiplier's force stands
+ * where it is, and that of the constraint that it is of goes along as it turns. */
+static void add_derivative(struct building *b, const struct energy *energy, struct segment_equations *s,
+			   struct form **force)
+{
+	const int n = b->model->n;
+	struct form **by = ARRAY(struct form *, n);
+	add_energy(b, energy, s, by);
+	if (energy->of) {
+		const struct constraint *constraint = &s->constraint[energy->multiplier->index];
+		const int first = constraint->by[0] == NULL;
+		add_where(force, by, energy->own, n);
+		by = ARRAY(struct form *, n);
+		add_gradient(b, constraint->by[first], form_unit(multiplier_basis(&b->model->frame, energy->of->index)),
+			     first, by);
+	}
+	add_where(force + energy->behind, by, 0, energy->own);
+}
+
 struct adding {
 	struct building *b;
 	struct segment_equations *s;
@@ -326,7 +352,7 @@ struct adding {
 static void add_guarded(void *context)
 {
 	const struct adding *a = context;
-	add_energy(a->b, a->energy, a->s, a->force);
+	(a->energy->own ? add_derivative : add_energy)(a->b, a->energy, a->s, a->force);
 }
 
 struct form **lagrange_terms(struct building *b, struct segment_equations *s)

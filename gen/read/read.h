@@ -170,6 +170,10 @@ struct energy {                     /* or the force at a point, or a constraint 
 	struct place at, end;
 	struct node *value, *point;
 	struct symbol *multiplier;  /* of a constraint */
+	/* of a derivative: what the first `own` coordinates' equations would have of it stands so many further behind;
+	 * of a constraint's the multiplier of that; 0: of none */
+	int own, behind;
+	const struct symbol *of;
 };
 struct drawing {                    /* draw WHAT at POINT, or from POINT to POINT: for pages */
 	struct place at, end;

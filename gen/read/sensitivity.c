@@ -158,6 +158,7 @@ struct varying {                    /* one derivative */
 	const struct sensitivity *of;
 	struct slope by;
 	const char *suffix;         /* of its symbols: k, x_0 */
+	int own, first;             /* components of coordinates: of the model, before those that are added */
 };
 
 static struct symbol *add_like(const struct varying *v, const struct symbol *like)
@@ -179,6 +180,9 @@ static void add_moved(struct varying *v, int symbols)
 			made->index = spec->count.components;
 			spec->count.components += s->length ? s->length : 1;
 			spec->count.coords++;
+		} else if (s->kind == SYMBOL_MULTIPLIER) {
+			v->by.moved[s->number] = add_like(v, s);
+			v->by.moved[s->number]->index = spec->count.multipliers++;
 		} else if (s->kind == SYMBOL_INPUT && s == v->of->symbol) {
 			v->by.moved[s->number] = add_like(v, s);
 			v->by.moved[s->number]->index = spec->count.inputs++;
@@ -219,20 +223,40 @@ static struct node *force_between(struct node *factor, const struct element *e, 
 static void add_element(struct varying *v, struct element e)
 {
 	const struct element own = e;
-	struct node *change = slope_by(e.value, v->by);
-	const bool force = e.kind == ELEMENT_FORCE;
+	struct node *change = e.kind == ELEMENT_ENERGY ? NULL : slope_by(e.value, v->by);
+	const bool force = e.kind == ELEMENT_FORCE, energy = e.kind == ELEMENT_ENERGY;
 	const int order = e.kind == ELEMENT_MASS ? 2 : e.kind == ELEMENT_DAMPER ? 1 : 0;
 	e.from = moved_node(v, own.from);
 	e.to = moved_node(v, own.to);
 	if (force)
 		e.value = change;
 	*MORE(v->spec->element, v->spec->elements) = e;
-	for (int end = 0; end < (own.to ? 2 : 1) && !force && !is_zero_node(change); end++) {
+	for (int end = 0; end < (own.to ? 2 : 1) && !force && !energy && !is_zero_node(change); end++) {
 		struct element by = { .kind = ELEMENT_FORCE, .part = own.part, .at = own.at, .end = own.end };
 		by.from = end ? e.to : e.from;
 		by.value = force_between(change, &own, order, end);
 		*MORE(v->spec->element, v->spec->elements) = by;
 	}
+}
+
+/* Lagrange's equations of the derivative of L, by the coordinates themselves, are the derivatives of those of L. */
+static void add_energy(struct varying *v, struct energy e)
+{
+	struct spec *spec = v->spec;
+	const struct energy own = e;
+	e.behind = v->first;
+	e.own = v->own;
+	e.value = slope_by(own.value, v->by);
+	e.of = own.multiplier;
+	e.multiplier = e.of ? v->by.moved[e.of->number] : NULL;
+	if (!is_zero_node(e.value))
+		*MORE(spec->energy, spec->energies) = e;
+	if (!own.point)
+		return;
+	e.value = own.value;
+	e.point = slope_by(own.point, v->by);
+	if (!is_zero_node(e.point))
+		*MORE(spec->energy, spec->energies) = e;
 }
 
 static void add_initial_node(struct varying *v, const struct initial *like, struct node *value)
@@ -249,7 +273,7 @@ static void add_initials_of(struct varying *v, int initials)
 	for (int i = 0; i < initials; i++) {
 		const struct initial like = v->spec->initial[i];
 		struct node *value = slope_by(like.value, v->by);
-		if (!is_zero_node(value))
+		if (!is_zero_node(value) || v->spec->count.multipliers > 0) /* what is not named follows from constraints */
 			add_initial_node(v, &like, value);
 	}
 	if (of->symbol->kind != SYMBOL_COORD)
@@ -275,14 +299,18 @@ static void add_outputs(struct varying *v, int symbols)
 	}
 }
 
-struct extent { int symbols, equations, elements, initials; };
+struct extent { int symbols, equations, elements, energies, initials, components; };
 
 static void vary(struct varying *v, struct extent before)
 {
 	struct spec *spec = v->spec;
 	v->by.moved = ARRAY(struct symbol *, (size_t)before.symbols + 1);
 	v->by.known = ARRAY(struct node *, (size_t)before.symbols + 1);
+	v->own = before.components;
+	v->first = spec->count.components;
 	add_moved(v, before.symbols);
+	for (int i = 0; i < before.energies; i++)
+		add_energy(v, spec->energy[i]);
 	for (int i = 0; i < before.equations; i++)
 		add_equation(v, spec->equation[i]);
 	for (int i = 0; i < before.elements; i++)
@@ -304,10 +332,11 @@ void add_derivatives(struct spec *spec, int first, int count)
 {
 	if (count == 0)
 		return;
-	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->initials };
+	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->energies,
+				       spec->initials, spec->count.components };
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
-		struct varying v = { spec, s, { .at = s->at, .kind = SLOPE_PARAM, .name = s->name }, suffix_of(s) };
+		struct varying v = { spec, s, { .at = s->at, .kind = SLOPE_PARAM, .name = s->name }, suffix_of(s), 0, 0 };
 		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;
 		vary(&v, before);
 	}

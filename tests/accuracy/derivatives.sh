@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # derivatives.sh PLGEN PLRUN JUDGE SOURCE [SEEDS]: derivatives of steps, as TAP. Constants and runs of random models
 # against JUDGE, made of derivatives.c, which differs in multiprecision; those of derivatives.cases, by plrun, within
-# 2e-13 of the largest of their column, and beside them the outputs of a run without derivatives, to the last bit.
+# 2e-13 of the largest of their column, and beside them the outputs of a run without derivatives, to the last bit;
+# those of derivatives_nonlinear.cases against differences of runs, with SEEDS all of them and at three tolerances.
 set -u
 absolute() {
 	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
@@ -229,5 +230,62 @@ awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives.
 while read -r name; do
 	by=$(sed -n 's,^d[^/]*/d\([^ ]*\) .*,\1,p' "$name.values" | awk '!n[$0]++' | paste -s -d ,)
 	backwards "$name" "$name.spec" --sensitivity "$by"
+done <names
+
+# row NAME OPTION ...: the last row of a run
+row() {
+	spec=$1 until=$2
+	shift 2
+	"$plrun" "$@" "$spec.spec" "$until" 2>>log | tail -n 1
+}
+
+# varied NAME END PARAM VALUE: differences of fourth order of all outputs, of runs that are as exact as can be
+varied() {
+	size=$(awk "BEGIN { v = $4; print 1e-3*(v < 0 ? -v : v) }")
+	for side in -2 -1 1 2; do
+		# shellcheck disable=SC2086
+		row "$1" "$2" $exact -D "$3=$(awk "BEGIN { printf \"%.17g\", $4 + $side*$size }")"
+	done | awk -F , -v size="$size" '{ for (i = 2; i <= NF; i++) y[NR, i] = $i; n = NF }
+		END { for (i = 2; i <= n; i++)
+			printf "%.17g%s", (y[1, i] - 8*y[2, i] + 8*y[3, i] - y[4, i])/(12*size), i < n ? "," : "\n" }'
+}
+
+# differ NAME END BOUND TOLERANCE PARAM=VALUE ...: columns of derivatives against the rows of NAME.differences
+differ() {
+	name=$1 end=$2 bound=$3 tolerance=$4
+	shift 4
+	by=$(printf '%s\n' "$@" | sed 's/=.*//' | paste -s -d ,)
+	# shellcheck disable=SC2086
+	row "$name" "$end" $tolerance --sensitivity "$by" | awk -F , -v columns=$# -v bound="$bound" '
+		FNR == NR { for (i = 1; i <= NF; i++) value[FNR, i] = $i; outputs = NF; next }
+		{ for (p = 1; p <= columns; p++) {
+			size = 0
+			for (i = 1; i <= outputs; i++) { v = value[p, i]; size = v*v > size*size ? v : size }
+			for (i = 1; i <= outputs; i++) {
+				off = $(1 + outputs + (i - 1)*columns + p) - value[p, i]
+				if (!(off*off <= bound*bound*size*size)) {
+					print "output " i " by param " p ": off by " off " of " value[p, i]; bad = 1 }
+			} } }
+		END { exit bad || FNR != 1 || !outputs }' "$name.differences" - >>log
+	result $? "$name by $by, ${tolerance:-as it is}"
+}
+
+awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives_nonlinear.cases" >names || exit 99
+while read -r name; do
+	read -r when end bound params <"$name.values"
+	[ "$when" = quick ] || [ "$seeds" -gt 16 ] || continue
+	: >log
+	exact= ; tolerances=
+	grep -q '^scheme [a-z]* *[0-9]\|^scheme \(etd\|dq\)' "$name.spec" || exact='--tolerance 1e-13'
+	for param in $params; do
+		varied "$name" "$end" "${param%%=*}" "${param#*=}"
+	done >"$name.differences"
+	# shellcheck disable=SC2086
+	differ "$name" "$end" "$bound" "${exact:+--tolerance 1e-12}" $params
+	[ "$seeds" -gt 16 ] && [ "$exact" ] && for tolerance in 1e-6 1e-9; do
+		: >log
+		# shellcheck disable=SC2086
+		differ "$name" "$end" "${tolerance%-*}-$((${tolerance#*-} - 3))" "--tolerance $tolerance" $params
+	done
 done <names
 tap_end
