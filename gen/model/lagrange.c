@@ -323,8 +323,8 @@ static void add_where(struct form **to, struct form **from, int first, int end)
 			add_to(&to[j], from[j], NULL);
 }
 
-/* Of a derivative: into the equations of the coordinates' derivatives. Of a constraint its own multiplier's force stands
- * where it is, and that of the constraint that it is of goes along as it turns. */
+/* Of a derivative: into the equations of the coordinates' derivatives. Of a constraint its own multiplier's force
+ * stands where it is, and that of the constraint that it is of goes along as it turns. */
 static void add_derivative(struct building *b, const struct energy *energy, struct segment_equations *s,
 			   struct form **force)
 {

@@ -273,7 +273,8 @@ static void add_initials_of(struct varying *v, int initials)
 	for (int i = 0; i < initials; i++) {
 		const struct initial like = v->spec->initial[i];
 		struct node *value = slope_by(like.value, v->by);
-		if (!is_zero_node(value) || v->spec->count.multipliers > 0) /* what is not named follows from constraints */
+		/* beside constraints what is not named follows */
+		if (!is_zero_node(value) || v->spec->count.multipliers > 0)
 			add_initial_node(v, &like, value);
 	}
 	if (of->symbol->kind != SYMBOL_COORD)
@@ -336,7 +337,8 @@ void add_derivatives(struct spec *spec, int first, int count)
 				       spec->initials, spec->count.components };
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
-		struct varying v = { spec, s, { .at = s->at, .kind = SLOPE_PARAM, .name = s->name }, suffix_of(s), 0, 0 };
+		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };
+		v.by = (struct slope){ .at = s->at, .kind = SLOPE_PARAM, .name = s->name };
 		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;
 		vary(&v, before);
 	}
