@@ -196,8 +196,7 @@ void pl_switching_compensated_step(const pl_switching *m, PL_REAL *x, pl_contact
 void pl_switching_compensated_advance(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c,
                                       pl_crossing *crossing, PL_REAL *work);
 
-/* Advances x over dt [s], 0 <= dt <= h, with one of its linear systems by a Taylor polynomial of this degree, without a
- * search for crossings. */
+/* Advances x over dt [s], 0 <= dt <= h, by a Taylor polynomial of one of its linear systems, without a search. */
 void pl_switching_compensated_move(const pl_switching *m, int matrix, int degree, PL_REAL dt, PL_REAL *x,
                                    PL_REAL *work);
 
@@ -213,8 +212,7 @@ typedef struct pl_series_switching {
 } pl_series_switching;
 
 /* Sets the interval of each switching function at the start; exactly on a breakpoint the first derivative that is not 0
- * decides, or if there is none it is the lower interval.  Returns 1 if an interval changed, so that c is to be computed
- * again, else 0. */
+ * decides, or if there is none it is the lower interval.  Returns 1 if an interval changed: compute c again; else 0. */
 int pl_series_switching_place(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
 
 /* A function that starts on the breakpoint above its interval, and by c, whose unit of time is the step, soon exceeds
@@ -222,16 +220,14 @@ int pl_series_switching_place(const pl_series_switching *m, const PL_REAL *c, co
 int pl_series_switching_rises(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, int *interval);
 
 /* Returns 1 if a switching function is outside its interval by more than rounding, else 0; *crossing receives which,
- * and the breakpoint.  On entry *crossing is the last crossing, whose breakpoint the function may still be on;
- * expression -1: none. */
+ * and the breakpoint.  On entry it is the last crossing, on whose breakpoint it may still be; expression -1: none. */
 int pl_series_switching_left(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms, const int *interval,
-                    pl_crossing *crossing);
+                             pl_crossing *crossing);
 
 /* Returns the time, at most `end`, in the unit of time of c, when a switching function first leaves its interval, or -1
  * if none does.  The search steps over no root of a polynomial; *splits < 0 afterwards: it needed too many halvings. */
 PL_REAL pl_series_switching_next(const pl_series_switching *m, const PL_REAL *c, const PL_REAL *terms,
-                                 const int *interval, PL_REAL end,
-                        int *splits, pl_crossing *crossing, PL_REAL *work);
+                                 const int *interval, PL_REAL end, int *splits, pl_crossing *crossing, PL_REAL *work);
 
 /* ---- events.c: impacts, contacts at rest and dry friction in models with a Taylor series ----------------------- */
 
@@ -265,8 +261,7 @@ typedef struct pl_events {
     const pl_conflict *conflict;
     PL_REAL h;                /* step [s], the unit of time of c */
     int max_events;
-    /* holds x states and impacts x states: the watch of an entry of back and place_back that depends on the state, -1:
-     * the entry itself; NULL: none does */
+    /* of an entry of back and place_back that depends on the state its watch, -1: none; NULL: no entry does */
     const int *back_watch, *place_watch;
 } pl_events;
 
@@ -316,8 +311,7 @@ PL_REAL pl_events_next(const pl_events *m, pl_instant *at, PL_REAL *size, int *s
  * resolved as described at pl_guards_advance. */
 int pl_events_pass(const pl_events *m, pl_instant *at);
 
-/* Returns 1 if a switching function or a constraint is outside its interval at the start of the computed series c,
- * which at->next then describes, else 0. */
+/* Returns 1 if a function or a constraint, then in at->next, is outside its interval where c starts, else 0. */
 int pl_events_left(const pl_events *m, pl_instant *at);
 
 /* Sets at->next to this event, which another search found; a constraint that it ends is released. */
@@ -365,11 +359,9 @@ typedef struct pl_guards {
     const pl_guard *guard;
     const PL_REAL *limit; /* of each guard */
     const int *hold;
-    /* Guard functions g = guard_row . x; d/3 times their slopes; bounds as for pl_switching.  Each has rows of `size`.
-     * */
+    /* Guard functions g = guard_row . x; d/3 times their slopes; bounds as for pl_switching; in rows of `size` */
     const PL_REAL *guard_row, *guard_tangent, *chord_error, *cubic_error;
-    /* For each switching and each guard function: the sum of sizes of its factors of cos and sin, which bounds the
-     * rounding error when these are evaluated again. */
+    /* Of each of both: the sum of sizes of its factors of cos and sin, which bounds the error when it is made again */
     const PL_REAL *amplitude, *guard_amplitude;
     /* Assignments x[state] = value . x; set k is set[k] to set[k + 1] - 1, all computed from the same x. */
     const int *set, *state;
@@ -378,8 +370,7 @@ typedef struct pl_guards {
     const pl_impact *impact;
     /* impacts x size, for bounces: the approach speed is speed . x; x - (e - b) back is on the breakpoint b. */
     const PL_REAL *speed, *back;
-    int degree;                 /* as for pl_switching */
-    int max_events, max_splits; /* as for pl_switching */
+    int degree, max_events, max_splits; /* as for pl_switching */
 } pl_guards;
 
 /* Sets *c to the region of x, as pl_switching_start; on a double breakpoint x is held if its conditions allow it. */
@@ -387,8 +378,7 @@ void pl_guards_start(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REA
 
 /* Advances x over tau [s], 0 <= tau <= h, as pl_switching_advance.  At an event where several contacts may stick or
  * slip, the combination is taken that is consistent: no friction that sticks exceeds its stick limit, and each that
- * slips moves in its direction.  Of several such combinations it is the one with the fewest changes, then with the most
- * that stick.
+ * slips moves in its direction.  Of several it is the one with the fewest changes, then with the most that stick.
  *
  * Impacts at one instant act in their order, each on the state after the one before, and again from the first, until no
  * contact closes.  An impact slower than 2^-48 of the fastest (float: 2^-20) ends its bounces, and the contact rests;
@@ -408,8 +398,7 @@ void pl_guards_advance(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *
 
 /* Resolves contacts at this time [s] of a step, when loads have changed their formula and m holds the tables from then
  * on.  A switching function that has left its interval by a jump of a load passes its breakpoints, in the order of
- * functions, without impacts; then contacts that touch and close bounce, and sticking and resting are resolved again.
- * */
+ * functions, without impacts; then contacts that touch and close bounce, and what sticks and rests is found again. */
 void pl_guards_change(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                       PL_REAL *work);
 
@@ -556,15 +545,13 @@ typedef struct pl_lead {
 } pl_lead;
 
 /* Changes w from `before` to `after` [rad/s] at time t [s]: adds (before - after) t to the lead, with a relative error
- * below 2^-115, in floats 2^-86, and another of 2^-129 cycles, in floats 2^-65, so that many or late changes do no
- * harm. */
+ * below 2^-115, in floats 2^-86, and another of 2^-129 cycles, in floats 2^-65: many or late changes do no harm. */
 void pl_lead_change(pl_lead *lead, PL_REAL before, PL_REAL after, PL_REAL t);
 
 /* ---- descriptor of a model ------------------------------------------------------------------------------- */
 
 /* The table by which a program runs any model.  s points to the model's state, `size` bytes, aligned as a double or a
- * uint64_t; copying the bytes saves and restores it.  u is one sample of the `inputs` inputs, NULL if there are none.
- * */
+ * uint64_t; copying the bytes saves and restores it.  u is one sample of the `inputs` inputs, or NULL for none. */
 typedef struct pl_model {
     int version;                  /* PL_MODEL_VERSION of the plrt.h that the model was compiled with */
     int real_size;                /* sizeof(double); in its place a pl_modelf says sizeof(float) */
@@ -589,8 +576,8 @@ typedef struct pl_model {
     int (*retune)(void *s, const PL_REAL *params, PL_REAL h); /* state and time stay; NULL: nothing is tunable */
     void (*hold)(void *s, const PL_REAL *u); /* the samples before the first step; NULL where no input is a ramp */
     /* Of each input the number of samples before the first step.  0: held, row k of a record acts from k h to (k + 1)
-     * h; 1: a ramp, row 0 is the sample at t = 0, which `hold` takes, and row k + 1 that at the end of step k; m > 1:
-     * `hold` takes rows 0 to m - 1 in turn, step k row k + m.  NULL if there are no inputs. */
+     * h; 1: a ramp, `hold` takes row 0, the sample at t = 0, and step k row k + 1, that at its end; m > 1: `hold` takes
+     * rows 0 to m - 1 in turn, step k row k + m.  NULL if there are no inputs. */
     const int *start_samples;
 } pl_model;
 

@@ -26,8 +26,7 @@
  * the names for double.
  *
  * Compile it with the compiler's default flags: contraction to fused multiply-adds is harmless, and flags that reorder
- * sums are refused below.
- * */
+ * sums are refused below. */
 #ifndef PLRT_H
 #define PLRT_H
 

@@ -109,8 +109,7 @@ static inline void sum_up(int n, int degree, const real *coefficients, real s, r
     }
 }
 
-/* How far a switching function is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside the interval
- * */
+/* How far a switching function is beyond a breakpoint: g(s), 0 <= s <= 1 over the piece, negative inside */
 typedef struct beyond {
     int degree;
     real *coefficient;

@@ -5,6 +5,8 @@
 
 #include "model.h"
 
+struct segment_equations;
+
 /* ---- bounds.c: what a spec says of single states ---- */
 
 void evaluate_absolutes(struct building *b);                /* into truncation.absolute */
@@ -45,6 +47,9 @@ void constant_of(struct collector *c, const struct form *form, mpq_ptr value); /
 void jacobian_of_rows(struct jacobian *j, const struct form *const *row);     /* of other residuals */
 void jacobian_at(struct jacobian *j, struct point *point);
 int  jacobian_point(const struct jacobian *j, struct fixing *fixing); /* states + 1, which it fixes */
+/* The left side minus the right side of an equation, not solved for its highest derivatives */
+const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
+void jacobian_of_motion(void *jacobian);                    /* a struct jacobian, of M^-1 f as numbers alone */
 /* [1/s^2] of the coordinates' stiffness alone, eigenvalues of W^-1 K, rising; false: not found */
 bool squared_frequencies(const struct linear *system, double *value);
 double fastest_pole(const struct linear *system);           /* its size [1/s]; 0: not found */

@@ -3,6 +3,7 @@
  * the numbers of the generated code, so eigenvalues in double will do. */
 #include "building.h"
 #include "checks.h"
+#include "math/math.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -117,4 +118,94 @@ double fastest_decay(const struct linear *system)
 	double *value = ARRAY(double, system->states);
 	bool found = sorted_eigenvalues(system->states, state_matrix(system, false), false, value);
 	return found ? fmax(-value[0], 0) : 0;
+}
+
+/* ---- where a mass matrix moves ---- */
+
+const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row)
+{
+	for (int i = 0; i < s->masses; i++) {
+		const struct written_system *written = s->mass[i].system.written;
+		for (int k = 0; k < written->rows; k++)
+			if (written->highest[k].index < s->residuals && owner[written->highest[k].index] == row)
+				return written->residual[k];
+	}
+	return s->residual[row].form;
+}
+
+/* Values in double: their exact inverse would have as many digits as M has entries. */
+static void evaluate_rounded(struct jacobian *j, struct point *at, int count, const struct form *const *form,
+			     mpq_t *value)
+{
+	for (int i = 0; i < count; i++) {
+		constant_of(&j->b->collector, form_at(at, form[i]), value[i]);
+		mpq_set_d(value[i], mpq_get_d(value[i]));
+	}
+}
+
+/* q'' of one block there, as further fixings; returns the inverse of its M */
+static mpq_t *fix_highest(struct jacobian *j, struct point *at, const struct moving_mass *mass, struct fixing *fixing)
+{
+	const struct linear_system *e = &mass->system;
+	const int n = e->n;
+	int column;
+	mpq_t *inverse = rationals((size_t)(n * n));
+	RATIONALS *M = rationals((size_t)(n * n)), *f = rationals((size_t)n), *x = rationals((size_t)n);
+	evaluate_rounded(j, at, n * n, e->M, M);
+	evaluate_rounded(j, at, n, e->f, f);
+	if (!rational_inverse(n, M, inverse, &column))
+		abandon();
+	unreduced_product(n, n, 1, inverse, f, x);
+	for (int i = 0; i < n; i++) {
+		const struct basis *highest = &e->written->highest[i];
+		fixing[i] = (struct fixing){ .symbol = j->b->model->frame.coord[highest->index],
+					     .coord = highest->index, .order = highest->order };
+		mpq_init(fixing[i].value);
+		mpq_set_d(fixing[i].value, mpq_get_d(x[i]));
+	}
+	return inverse;
+}
+
+/* Of all n columns of a block's rows, one after the other */
+static int place_in_row(const struct jacobian *j, const struct moving_mass *mass, int i)
+{
+	const int all = j->b->model->n, coord = mass->system.written->highest[i / all].index;
+	return j->b->owner[coord] * all + i % all;
+}
+
+/* Rows of a block times the inverse of its M */
+static void solve_rows(const struct jacobian *j, const struct moving_mass *mass, const mpq_t *inverse, mpq_t *rows)
+{
+	const int n = mass->system.n, all = j->b->model->n;
+	RATIONALS *own = rationals((size_t)(n * all)), *solved = rationals((size_t)(n * all));
+	for (int i = 0; i < n * all; i++)
+		mpq_set_d(own[i], mpq_get_d(rows[place_in_row(j, mass, i)]));
+	unreduced_product(n, n, all, inverse, own, solved);
+	for (int i = 0; i < n * all; i++)
+		mpq_set_d(rows[place_in_row(j, mass, i)], mpq_get_d(solved[i]));
+}
+
+/* With F = M q'' - f as written and q'' as it is there, M^-1 of F's derivatives: those of q'' - M^-1 f as forms would
+ * be n^3 products. */
+void jacobian_of_motion(void *context)
+{
+	struct jacobian *j = context;
+	struct building *b = j->b;
+	const int n = b->model->n, masses = b->full->masses;
+	const struct form **row = ARRAY(const struct form *, n);
+	for (int i = 0; i < n; i++)
+		row[i] = residual_as_written(b->full, b->owner, i);
+	jacobian_of_rows(j, row);
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1 + n);
+	int fixings = jacobian_point(j, fixing);
+	struct point *start = point_new(&b->collector, fixings, fixing);
+	point_at_values(start);
+	mpq_t **inverse = ARRAY(mpq_t *, masses);
+	for (int i = 0; i < masses; fixings += b->full->mass[i++].system.n)
+		inverse[i] = fix_highest(j, start, &b->full->mass[i], fixing + fixings);
+	jacobian_at(j, point_new(&b->collector, fixings, fixing));
+	for (int i = 0; i < masses; i++) {
+		solve_rows(j, &b->full->mass[i], inverse[i], j->at.C);
+		solve_rows(j, &b->full->mass[i], inverse[i], j->at.K);
+	}
 }

@@ -15,9 +15,6 @@ struct segment_equations;
 bool has_highest(const struct building *b, const struct form *form, int coord);
 /* Residuals q'' - (M^-1 f) in the place of those that M(q) couples; what is not linear in q'' is an error there */
 void solve_for_highest(struct building *b, struct segment_equations *s);
-/* The left side minus the right side of an equation, not solved for its highest derivatives */
-const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
-void jacobian_of_motion(void *jacobian);    /* a struct jacobian, of M^-1 f as numbers alone */
 /* The row of M, n x n in rows of `width`, by which T of energies is below 0, and the first T; -1: none */
 struct energy;
 int  negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What was derived: for a person, and as JSON for a program. */
-#include "model/state_mass.h"
+#include "model/checks.h"
 #include "model/building.h"
 #include "model/reads.h"
 #include "report/report.h"

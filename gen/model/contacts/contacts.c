@@ -3,7 +3,7 @@
  * holds something and what lets it go as forms. */
 #include "model/building.h"
 #include "model/capability.h"
-#include "model/state_mass.h"
+#include "model/checks.h"
 #include "contacts.h"
 #include "inner.h"
 

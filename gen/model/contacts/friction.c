@@ -6,7 +6,7 @@
  * Filippov (Differential Equations with Discontinuous Righthand Sides, 1988). */
 #include "inner.h"
 #include "model/building.h"
-#include "model/state_mass.h"
+#include "model/checks.h"
 
 /* ---- is there any? ---- */
 
