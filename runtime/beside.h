@@ -10,6 +10,7 @@
  *     PL_DECLARED                  1: outputs are declared; else they are the states
  *     PL_ENDED(b)                whether b has no more of a series in hand, so that its states may be written
  *     PL_PAST_SAMPLES            of an input before the last
+ *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
  *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
  *     PL(moved_state)[PL_STATES]     and of which state
@@ -65,12 +66,39 @@ static void PL(take_samples)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds
     (void)ds;
 }
 
+#if PL_PARAMS > 0
+/* As the model has been retuned meanwhile; not 0: there are no such factors */
+static int PL(follow_params)(PL_TYPE *b, const PL_OF_TYPE *s)
+{
+    int i, same = 1, status = 0;
+    for (i = 0; i < PL_PARAMS; i++) {
+        same = same && b->coeffs.params[i] == s->coeffs.params[i];
+    }
+#if PL_TUNED
+    same = same && b->coeffs.h == s->coeffs.h;
+#endif
+    if (!same) {
+        PL(coeffs) fresh = b->coeffs;
+#if PL_TUNED
+        status = PL(retune)(&fresh, s->coeffs.params, s->coeffs.h);
+#else
+        status = PL(retune)(&fresh, s->coeffs.params, PL_H);
+#endif
+        PL(use)(b, &fresh);
+    }
+    return status;
+}
+#endif
+
 /* The states are the model's where a series begins, so that the derivatives are of what it computes; what was set
  * meanwhile begins anew. */
 static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 {
     real z[PL_STATES];
     int i;
+#if PL_PARAMS > 0
+    (void)PL(follow_params)(b, s);
+#endif
     PL(both_states)(s, ds, z);
     PL(take_samples)(b, s, ds);
     if (!PL(is_left)(b, s, ds, z)) {
@@ -102,6 +130,9 @@ static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const
 #if PL_INPUTS > 0
     real both[PL_INPUTS];
     PL(both_samples)(u, du, both);
+#endif
+#if PL_PARAMS > 0
+    ds->status |= PL(follow_params)(b, s) ? (unsigned)PL_NOT_FINITE : 0u;
 #endif
     PL(follow)(b, s, ds);
     PL(step)(b PL_BOTH);

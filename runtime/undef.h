@@ -14,6 +14,7 @@
 #undef PL_AT
 #undef PL_DECLARED
 #undef PL_BESIDE
+#undef PL_TUNED
 #undef PL_BOTH
 #undef PL_MOVED
 #undef PL_OWN_OUTPUTS

@@ -209,6 +209,8 @@ static void emit_model_beside(const struct emitter *e)
 	emit_declared_tables(e);
 	if (e->step->series.emitted)
 		emit_if_any(e->prints->at, e);
+	if (has_jump(e))
+		emit_jump(e);
 }
 
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs)

@@ -4,6 +4,13 @@
 #include "step.h"
 #include "model/reads.h"
 #include "model/series/remainder.h"
+#include "model/tunable/tuning.h"
+
+/* Whose factors the target makes, or whose step is no list of rows: it is stepped as the model is. */
+static bool goes_apart(const struct step *step)
+{
+	return has_remainder(step) || step->model->spec->tunables > 0;
+}
 
 /* By the scheme of the model: the derivative of what it computes is what the scheme computes of the derivative. */
 static const char *scheme_of_derivatives(const struct step *step)
@@ -20,7 +27,7 @@ static struct request request_of_derivatives(const struct step *step, int first,
 	struct request request = step->model->request;
 	request.again = (struct again){ .derivatives_from = first, .derivatives = count };
 	request.scheme = scheme_of_derivatives(step);
-	if (has_remainder(step))
+	if (goes_apart(step))
 		request.prefix = format("%s_d%d", step->model->name, first);
 	request.modes = NULL;
 	request.reduce = request.compensated = request.selftest = false;
@@ -55,11 +62,12 @@ static void check_loads(const struct step *step, const struct step *made, const 
 static struct step *step_of(const struct step *step, int first, int count)
 {
 	const struct request request = request_of_derivatives(step, first, count);
-	const struct model *model = model_build(parse_spec(step->model->spec->source), &request);
+	struct model *model = model_build(parse_spec(step->model->spec->source), &request);
+	model = model ? find_tuning(model, &request) : NULL;
 	struct step *made = model ? step_build(model) : NULL;
 	if (!made)
 		abandon();
-	if (!has_remainder(step))
+	if (!goes_apart(step))
 		check_loads(step, made, &step->model->spec->sensitivity[first]);
 	return made;
 }
@@ -90,7 +98,7 @@ static void derive(void *context)
 		check_smooth(step->model);
 	struct derivatives *d = NEW(struct derivatives);
 	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity,
-				    .apart = has_remainder(step) };
+				    .apart = goes_apart(step) };
 	for (int i = 0; i < d->columns; i++)
 		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
 	const int together = columns_together(step);

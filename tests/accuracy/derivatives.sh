@@ -288,4 +288,66 @@ while read -r name; do
 		differ "$name" "$end" "${tolerance%-*}-$((${tolerance#*-} - 3))" "--tolerance $tolerance" $params
 	done
 done <names
+
+# ---- tunable params: derivatives after 60 steps and 60 with other values, against differences of such runs ----
+
+cat >tuned.c <<'END'
+#include "plrt.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+extern const pl_model r_model;
+extern const pl_derivatives r_derivatives;
+static void run(int which, double more, double *out, double *J)
+{
+	const pl_model *m = &r_model;
+	const pl_derivatives *d = &r_derivatives;
+	void *s = calloc(1, m->size), *ds = calloc(1, d->size);
+	double *value = calloc((size_t)m->params, sizeof(double));
+	d->init(s, ds);
+	for (int k = 0; k < 120; k++) {
+		for (int i = 0; i < m->params; i++)
+			value[i] = m->param_values[i] * (k < 60 ? 1 : 1.3) + (i == which ? more : 0);
+		if (k % 60 == 0 && m->retune(s, value, m->h))
+			exit(2);
+		if (J) d->step(s, ds, NULL, NULL); else m->step(s, NULL);
+	}
+	m->out(s, out);
+	if (J) d->out(s, ds, J);
+}
+int main(void)
+{
+	double out[4], J[32], y[4][4], h = 1e-3;        /* the first columns are those of the tunable params */
+	const int P = r_derivatives.columns;
+	int bad = 0;
+	run(-1, 0, out, J);
+	for (int p = 0; p < r_model.params; p++) {
+		for (int k = 0; k < 4; k++) run(p, h * (k < 2 ? k - 2 : k - 1), y[k], NULL);
+		for (int i = 0; i < r_model.outputs; i++) {
+			const double by = (y[0][i] - 8 * y[1][i] + 8 * y[2][i] - y[3][i]) / (12 * h);
+			printf("output %d by %s: %.17g, %.17g\n", i, r_derivatives.names[p], J[i * P + p], by);
+			bad = bad || !(fabs(J[i * P + p] - by) <= 1e-8 * (1 + fabs(by)));
+		}
+	}
+	return bad;
+}
+END
+cat >tuned.spec <<'END'
+model tuned
+param m = 2, c = 0.1, k = 1, w = 1.4
+coord x, y
+init x = 1
+tunable k, m, w
+sensitivity k, m, w, c
+m*x'' + c*x' + k*(x - y) = cos(w*t)
+y'' + c*y' + k*(2*y - x) = 0
+output x, e = x - 2*y
+step 0.05
+END
+sed 's/(x - y)/sin(x - y)/; s/^step/scheme taylor 16\nstep/' tuned.spec >tuned_series.spec
+for name in tuned tuned_series; do
+	"$PLGEN" --prefix r $name.spec >r.c 2>log &&
+		$run_cc -I"$root/runtime" tuned.c r.c "$archive" -lm -o r >>log 2>&1 && ./r >>log
+	result $? "$name: at the values that it was given"
+done
 tap_end

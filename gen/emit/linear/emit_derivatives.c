@@ -303,6 +303,8 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "AT", b->step->series.emitted }, { "PAST_SAMPLES", most_samples_before(b) },
 		   { "OWN_STATES", e->system->states }, { "OWN_INPUTS", given_inputs(e) },
 		   { "OWN_OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
+		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
+		   { "TUNED", b->step->is.tuned },
 		   { "FROM", block->first }, { "MOVED", block->columns }, { "DECLARED", e->model->declared_outputs });
 	say(e, "#define PL_OF(name) %s_##name\n"
 	       "#define PL_OF_TYPE %s\n"
