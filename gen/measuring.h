@@ -22,6 +22,7 @@ struct measuring {
 	bool single;                /* the target's type; a reference is in double */
 	double until;               /* [s] the last end of a need */
 	double *largest;            /* per need: of the reference's output */
+	bool stepped;               /* a reference goes from event to event: it is a scheme's, by its tolerance */
 	int drives;                 /* courses of the inputs that are tried; one where there are none */
 	struct sampled *drive;        /* NULL: there are none */
 	struct roads roads;
@@ -40,6 +41,7 @@ struct measuring {
 struct ready {                      /* a step as asked for, and its C */
 	struct step *step;          /* NULL: there is none */
 	struct running *r;          /* likewise */
+	struct request as;
 	struct roads roads;         /* the reference for its samples */
 };
 
@@ -49,8 +51,8 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 struct ready ready_of(struct measuring *m, const struct request *as, const char **why); /* without r: likewise */
 struct request request_of(const struct measuring *m, const struct alternative *a);
 bool open_reference(struct measuring *m);      /* false: m->why */
-/* From this start, with inputs number `drive`, against a reference from there; the largest of error over need. `spec`:
- * it is the spec's, and what is found is kept in the alternative */
+/* From this start, with inputs number `drive`, against a reference from there; the largest of error over need; below 0:
+ * there is no reference from there. `spec`: it is the spec's, and what is found is kept in the alternative */
 double tried_from(struct measuring *m, struct alternative *a, struct ready *ready, const double *start, int drive,
 		  bool spec);
 bool meets(const struct alternative *a);

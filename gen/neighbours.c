@@ -47,12 +47,15 @@ static void name_neighbour(struct alternative *a, const char *name)
 	a->neighbour_names = a->neighbour_names ? format("%s, %s", a->neighbour_names, name) : name;
 }
 
-/* From a neighbour: the excess of the worst is kept, and what it was */
+/* From a neighbour: the excess of the worst is kept, and what it was. Where contacts or constraints leave no motion
+ * from there, it is none. */
 static void try_near(struct measuring *m, struct alternative *a, struct ready *ready, const double *start,
 		     const char *what)
 {
 	struct alternative copy = *a;
 	const double error_ratio = tried_from(m, &copy, ready, start, a->worst_input, false);
+	if (error_ratio < 0)
+		return;
 	a->neighbours++;
 	if (error_ratio <= a->worst_neighbour)
 		return;

@@ -44,12 +44,13 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 
 struct ready ready_of(struct measuring *m, const struct request *as, const char **why)
 {
-	struct ready found = { .step = built(m, as, why), .roads = m->roads };
+	struct ready found = { .step = built(m, as, why), .as = *as, .roads = m->roads };
+	const enum running_with with = m->stepped ? WITH_COUNTS : WITH_RHS | WITH_COUNTS;
 	found.roads.most = LIMIT_MEASURED;
 	if (!found.step)
 		return found;
 	const char *refused;
-	found.r = running_new(m->model->needs.requirement[0].need->at, found.step, WITH_RHS | WITH_COUNTS, &refused);
+	found.r = running_new(m->model->needs.requirement[0].need->at, found.step, with, &refused);
 	found.roads.h = mpq_get_d(found.step->model->h);
 	(m->single ? target_float : target_double)();
 	*why = refused ? refused : *why;
@@ -57,6 +58,29 @@ struct ready ready_of(struct measuring *m, const struct request *as, const char 
 }
 
 /* ---- the reference ---- */
+
+/* What has events, or constraints, is stepped from one to the next by a series, or by collocation. */
+static struct course *stepped_road(struct measuring *m, const struct ready *ready, int which, const double *start,
+				   const char **why)
+{
+	struct request as = ready->as;
+	as.single = false;
+	as.form = FORM_AUTO;
+	as.scheme = which ? "radau" : "taylor";
+	as.tolerance = format("%.0e", ready->roads.tolerance);
+	as.step = shortest(ready->roads.h);
+	struct ready own = ready_of(m, &as, why);
+	own.roads = ready->roads;
+	own.roads.r = own.r;
+	return own.r ? stepped_course(&own.roads, start, why) : NULL;
+}
+
+/* By the first road or the second; NULL: *why */
+static struct course *road_from(struct measuring *m, struct ready *ready, int which, const double *start,
+				const char **why)
+{
+	return m->stepped ? stepped_road(m, ready, which, start, why) : road_of(&ready->roads, which, start, why);
+}
 
 /* [rad/s] the fastest that a coordinate moves: its velocity's largest size over its own */
 static double fastest_motion(const struct measuring *m)
@@ -72,12 +96,12 @@ static double fastest_motion(const struct measuring *m)
 }
 
 /* A pair of roads, and how far they are apart over what is needed; infinite: one comes to no end */
-static double disagreement(struct measuring *m)
+static double disagreement(struct measuring *m, struct ready *ready)
 {
 	struct course *course[ROADS] = { NULL };
 	double worst = 0;
 	for (int which = 0; which < ROADS; which++)
-		course[which] = which && !course[0] ? NULL : road_of(&m->roads, which, NULL, &m->why);
+		course[which] = which && !course[0] ? NULL : road_from(m, ready, which, NULL, &m->why);
 	for (int i = 0; i < m->model->needs.requirements && course[0] && course[1]; i++) {
 		const struct requirement *r = &m->model->needs.requirement[i];
 		m->largest[i] = fmax(m->drive ? m->largest[i] : 0, largest_of(course[0], i));
@@ -92,35 +116,36 @@ static double disagreement(struct measuring *m)
 }
 
 /* With all inputs that are tried; where they are apart with one the others are not looked at. */
-static double disagreements(struct measuring *m)
+static double disagreements(struct measuring *m, struct ready *ready)
 {
 	double worst = 0;
 	for (int i = 0; i < m->drives && worst <= known; i++) {
-		m->roads.drive = m->drive ? &m->drive[i] : NULL;
-		worst = fmax(worst, disagreement(m));
+		ready->roads.drive = m->drive ? &m->drive[i] : NULL;
+		worst = fmax(worst, disagreement(m, ready));
 	}
 	return worst;
 }
 
 /* Sizes of the states first, roughly; then tolerances down to where the roads agree */
-static bool find_tolerance(struct measuring *m)
+static bool find_tolerance(struct measuring *m, struct ready *ready)
 {
 	const size_t states = (size_t)m->model->written->system.states;
+	struct roads *roads = &ready->roads;
 	double apart_at_best = HUGE_VAL;
-	m->roads.h = m->drive ? m->drive->h : m->until / 64;
-	m->roads.drive = m->drive;
-	for (int pair = 0; pair < 2; pair++) {
-		m->roads.stiff = pair > 0;
-		m->roads.size = ARRAY(double, states);
-		m->roads.tolerance = 1e-5;
+	roads->h = m->drive ? m->drive->h : m->until / 64;
+	roads->drive = m->drive;
+	for (int pair = 0; pair < (m->stepped ? 1 : 2); pair++) {
+		roads->stiff = pair > 0;
+		roads->size = ARRAY(double, states);
+		roads->tolerance = 1e-5;
 		for (int again = 0; again < 2; again++) {
-			struct course *rough = road_of(&m->roads, 0, NULL, &m->why);
+			struct course *rough = road_from(m, ready, 0, NULL, &m->why);
 			if (rough)
 				course_free(rough);
 		}
 		for (double tolerance = 1e-8; tolerance > 1e-15; tolerance *= 0.01) {
-			m->roads.tolerance = tolerance;
-			const double found = disagreements(m);
+			roads->tolerance = tolerance;
+			const double found = disagreements(m, ready);
 			if (found <= known)
 				return true;
 			apart_at_best = fmin(apart_at_best, found);
@@ -184,13 +209,17 @@ bool open_reference(struct measuring *m)
 	struct request as = *m->request;
 	as.single = false;
 	as.form = FORM_AUTO;
-	const struct ready ready = ready_of(m, &as, &m->why);
+	m->stepped = goes_by_events(m->model) || m->model->spec->count.multipliers > 0;
+	struct ready ready = ready_of(m, &as, &m->why);
 	m->roads = (struct roads){ .r = ready.r, .until = m->until, .most = LIMIT_MEASURED / 4 };
 	if (!ready.r)
 		return false;
 	find_drives(m, ready.step);
 	find_changes(m);
-	if (!find_tolerance(m))
+	ready.roads = m->roads;
+	const bool found = find_tolerance(m, &ready);
+	m->roads = ready.roads;
+	if (!found)
 		return false;
 	const double fastest = fastest_motion(m);
 	m->longest = fmin(m->until / 16, fastest > 0 ? 2 * 3.14159265358979 / fastest / 8 : m->until);
@@ -211,12 +240,13 @@ static double cost_of_trial(const struct trial *t, const struct target *target, 
 }
 
 /* From the spec's start; it is kept where it is not too long */
-static struct course *kept_reference(struct measuring *m, struct roads *roads, int drive, const char **why)
+static struct course *kept_reference(struct measuring *m, struct ready *ready, int drive, const char **why)
 {
+	const struct roads *roads = &ready->roads;
 	for (int i = 0; i < m->kept; i++)
 		if (m->keeps[i].h == roads->h && m->keeps[i].drive == drive)
 			return m->keeps[i].course;
-	struct course *course = road_of(roads, 0, NULL, why);
+	struct course *course = road_from(m, ready, 0, NULL, why);
 	if (!course || course->samples * course->needs > MOST_KEPT)
 		return course;
 	course->kept = true;
@@ -229,9 +259,10 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 {
 	struct roads *roads = &ready->roads;
 	roads->drive = m->drive ? &m->drive[drive] : NULL;
-	struct course *reference = spec ? kept_reference(m, roads, drive, &a->why) : road_of(roads, 0, start, &a->why);
+	struct course *reference = spec ? kept_reference(m, ready, drive, &a->why)
+					: road_from(m, ready, 0, start, &a->why);
 	if (!reference)
-		return HUGE_VAL;
+		return m->stepped && !spec ? -1 : HUGE_VAL;
 	struct trial trial = trial_of(ready->r, reference, start, roads->drive);
 	const struct model *model = ready->step->model;
 	double worst = 0;

@@ -33,9 +33,15 @@ int output_named(const struct model *model, const char *name)
 }
 
 /* Of what is not linear, or piecewise linear, no bound is known: it is measured. */
+bool goes_by_events(const struct model *model)
+{
+	return has_contacts(model) || (model->switching && has_events(model->switching));
+}
+
 bool is_measured(const struct model *model)
 {
-	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.force_columns > 0;
+	bool measured = model->switching || model->nonlinear.obstacle || model->remainder.force_columns > 0 ||
+			goes_by_events(model);
 	for (int i = 0; i < model->spec->required.needs && !measured; i++) {
 		const int o = output_named(model, model->spec->required.need[i].output);
 		const struct output *output = o < 0 ? NULL : &model->output[o];

@@ -50,6 +50,7 @@ void refuse(enum capability requested, const struct model *model, struct place a
 const char *words_before(enum capability requested);             /* before a reason */
 
 bool steps_exactly(const struct model *model);               /* by scheme exact, or by one that nothing is left to */
+bool goes_by_events(const struct model *model);              /* friction, impacts, jumps */
 bool is_measured(const struct model *model);                 /* no bound is known: it is not linear, or in pieces */
 bool has_peak(const struct model *model);                    /* some output is one */
 int  output_named(const struct model *model, const char *name); /* its index; -1: there is none */

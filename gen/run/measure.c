@@ -28,17 +28,59 @@ static bool compare_sample(struct trial *trial, struct running *r, const struct 
 	return finite;
 }
 
+static void begin(struct running *r, const struct sampled *drive, const double *start)
+{
+	running_start(r, 0, NULL);
+	if (drive)
+		running_drive(r, drive, 0);
+	if (start)
+		running_start(r, 0, start);
+}
+
+/* What is needed at sample k; sizes of the states are kept. */
+static void take_sample(const struct roads *roads, struct course *course, long k, double *y)
+{
+	running_needed(roads->r, course->value + k * course->needs);
+	running_state(roads->r, y);
+	for (int i = 0; i < running_step_of(roads->r)->model->written->system.states && roads->size; i++)
+		roads->size[i] = fmax(roads->size[i], fabs(y[i]));
+}
+
+struct course *stepped_course(const struct roads *roads, const double *start, const char **why)
+{
+	const struct model *model = running_step_of(roads->r)->model;
+	struct course *course = course_of(model, roads->h);
+	SCRATCH double *u = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
+	SCRATCH double *y = ARRAY(double, (size_t)model->written->system.states + 1);
+	const uint64_t before = running_counted(roads->r).multiplications;
+	const char *ended = NULL;
+	begin(roads->r, roads->drive, start);
+	take_sample(roads, course, 0, y);
+	for (long k = 0; k < course->samples && !ended; k++) {
+		if (roads->drive)
+			drive_step(roads->drive, k, u);
+		running_step(roads->r, u);
+		take_sample(roads, course, k + 1, y);
+		if (running_status(roads->r) != 0)
+			ended = format("a reference ends with status %d at t = %.3g s", running_status(roads->r),
+				       running_time(roads->r));
+		else if (running_counted(roads->r).multiplications - before > roads->most)
+			ended = "a reference would take too long";
+	}
+	if (!ended)
+		return course;
+	*why = ended;
+	course_free(course);
+	return NULL;
+}
+
 struct trial trial_of(struct running *r, const struct course *reference, const double *start,
 		      const struct sampled *drive)
 {
 	const struct model *model = running_step_of(r)->model;
 	struct trial trial = { .error = ARRAY(double, 2 * (size_t)reference->needs + 1) };
 	double *u = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
-	running_start(r, 0, NULL);
-	if (drive)
-		running_drive(r, drive, 0);
-	if (start)
-		running_start(r, 0, start);
+	begin(r, drive, start);
 	bool finite = compare_sample(&trial, r, reference, 0);
 	const struct counted before = running_counted(r);
 	struct counted now = before;

@@ -44,7 +44,7 @@ static void fill_rows(struct running *r, const struct sampled *d, struct referen
 	SCRATCH double *u = ARRAY(double, (size_t)d->inputs + 1);
 	unsigned long k = 0;
 	begin(r, d, known->start);
-	for (known->rows = 0; known->rows < REFERENCE_ROWS; known->rows++) {
+	for (known->rows = 0; known->rows < FEW_ROWS; known->rows++) {
 		double *y = known->value + known->rows * known->states;
 		for (; k < known->steps[known->rows]; k++) {
 			drive_step(d, (long)k, u);
@@ -71,7 +71,7 @@ static const char *replay(const struct step *step, struct place at, struct refer
 	if (!r)
 		return why;
 	*known = new_reference(step->model->written->system.states);
-	const struct sampled d = samples_of_test(step, (long)known->steps[REFERENCE_ROWS - 1]);
+	const struct sampled d = samples_of_test(step, (long)known->steps[FEW_ROWS - 1]);
 	running_start(r, 0, NULL);
 	running_state(r, known->start);
 	fill_rows(r, &d, known);

@@ -91,6 +91,8 @@ struct roads {                      /* of NAME_rhs: two methods that have nothin
 };
 /* From these states (NULL: the spec's) by the first road or the second; NULL: *why */
 struct course *road_of(struct roads *roads, int which, const double *start, const char **why);
+/* The steps of roads->r themselves, of a scheme by its tolerance; NULL: *why */
+struct course *stepped_course(const struct roads *roads, const double *start, const char **why);
 /* at samples up to a need's end: the largest difference in its output, NaN where there is one; its largest size */
 double apart(const struct course *a, const struct course *b, int need);
 double largest_of(const struct course *a, int need);

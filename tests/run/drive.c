@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The same C, compiled, with -DMODEL=NAME -DRHS=NAME_rhs -DREAL=double and -DINPUTS where it has some: prints what
- * inside.c does. With END FACTOR instead of STEPS: to this time, from the spec's initial values times the factor. */
+ * inside.c does; without -DRHS no slopes. With END FACTOR instead of STEPS: to this time, from the spec's initial
+ * values times the factor. */
 #include <stdio.h>
 #include <stdlib.h>
 #include "plrt.h"
@@ -14,7 +15,8 @@ extern const pl_modelf NAME(MODEL);
 typedef double real;
 extern const pl_model NAME(MODEL);
 #endif
-#ifdef INPUTS
+#if !defined RHS
+#elif defined INPUTS
 void RHS(real t, const real y[], const real u[], real dydt[]);
 #else
 void RHS(real t, const real y[], real dydt[]);
@@ -52,7 +54,8 @@ int main(int argc, char **argv)
         print_row('o', value, NAME(MODEL).outputs);
     }
     NAME(MODEL).get(s, value);
-#ifdef INPUTS
+#if !defined RHS
+#elif defined INPUTS
     for (int i = 0; i < NAME(MODEL).inputs; i++) /* of ramps */
         u[NAME(MODEL).inputs + i] = (real)(i + 1) / 4;
     RHS(NAME(MODEL).time(s), value, u, value + 300);

@@ -88,7 +88,7 @@ void trajectory_free(struct trajectory *t);
 
 /* ---- passing.c, closed.c: states that the self-test compares with ---- */
 
-enum { REFERENCE_ROWS = 11 };
+enum { REFERENCE_ROWS = 11, FEW_ROWS = 8 };       /* few: where no crossing is waited for */
 struct reference {                  /* from t = 0 on; inputs follow u = 1 - t/h; held, u = 1 */
 	int states, rows;           /* rows: fewer where the states leave the range */
 	const unsigned long *steps; /* per row: how many have been taken */

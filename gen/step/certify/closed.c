@@ -5,8 +5,6 @@
 
 #include <math.h>
 
-enum { LINEAR_ROWS = 8 };           /* which leave no constant of a linear step out */
-
 struct closed_form {                /* of one state */
 	int count;
 	struct started *list;
@@ -55,7 +53,7 @@ static bool fill_row(const struct step *step, const struct closed_form *form, mp
 static void fill_rows(const struct step *step, const struct closed_form *form, struct reference *r)
 {
 	RATIONAL t = ZERO;
-	for (r->rows = 0; r->rows < LINEAR_ROWS; r->rows++) {
+	for (r->rows = 0; r->rows < FEW_ROWS; r->rows++) {
 		mpq_set_ui(t, r->steps[r->rows], 1);
 		mpq_mul(t, t, step->model->h);
 		if (!fill_row(step, form, t, r->value + r->rows * r->states))
