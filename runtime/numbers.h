@@ -56,9 +56,6 @@
 #ifndef PL_BY_PHI
 #define PL_BY_PHI 0
 #endif
-#ifndef PL_DERIVED
-#define PL_DERIVED 0
-#endif
 #ifndef PL_SWITCHING_FUNCTIONS
 #define PL_SWITCHING_FUNCTIONS 0
 #endif

@@ -28,11 +28,10 @@ classdef plgen_model < handle
             if nargin == 0
                 return                                      % for copy
             end
+            m.spec = spec;
             if any(spec == "\n")
                 m.text = spec;
                 m.spec = "-";
-            else
-                m.spec = spec;
             end
             while numel(varargin) >= 2 && varargin{1}(1) == "-"
                 switch varargin{1}
@@ -105,9 +104,7 @@ classdef plgen_model < handle
             m.fresh = false;
         end
         function y = at(m, tau, u = [])     % the states tau after now, 0 <= tau <= h
-            if ! (tau >= 0 && tau <= m.h)
-                fail("tau is not in 0 .. h");
-            end
+            need(tau >= 0 && tau <= m.h, "tau is not in 0 .. h");
             y = plgen_mex("at", m.code.id, m.bytes, tau, double(u(:))).';
         end
 
@@ -118,9 +115,7 @@ classdef plgen_model < handle
             y = zeros(0, numel(m.outputs));
             if isempty(m.inputs)
                 n = u;
-                if ! (isscalar(n) && n >= 0 && n == fix(n))
-                    fail("expected a number of steps");
-                end
+                need(isscalar(n) && n >= 0 && n == fix(n), "expected a number of steps");
                 u = [];
             else
                 u = record(m, u);
@@ -290,11 +285,8 @@ classdef plgen_model < handle
             if isscalar(m.inputs)
                 u = u(:);
             end
-            if columns(u) != numel(m.inputs)
-                fail(sprintf("expected rows of %d numbers, the inputs", numel(m.inputs)));
-            elseif ! all(isfinite(u(:)))
-                fail("the samples are not all finite");
-            end
+            need(columns(u) == numel(m.inputs), sprintf("expected rows of %d numbers, the inputs", numel(m.inputs)));
+            need(all(isfinite(u(:))), "the samples are not all finite");
             ahead = m.code.ahead;
             most = max(ahead);
             if most == 0 || ! (m.fresh || m.kept)
@@ -302,9 +294,7 @@ classdef plgen_model < handle
             end
             whole = [m.tail; u];
             n = rows(whole) - most;
-            if n < 0
-                fail(sprintf("too few samples: the first %d come before the first step", most));
-            end
+            need(n >= 0, sprintf("too few samples: the first %d come before the first step", most));
             for k = 1:most * m.fresh
                 from = k - most + ahead;
                 from(ahead == 0) = k;
@@ -378,9 +368,7 @@ classdef plgen_model < handle
                 words = [words, " -D ", quoted([one{1}, "=", expression(given.(one{1}))])];
             end
             [status, out, said] = shell([quoted(find_plgen()), words, " -- ", quoted(m.spec)], m.text);
-            if status
-                fail(strtrim(said));
-            end
+            need(status == 0, strtrim(said));
         end
 
         function build(m, params, h)
@@ -437,6 +425,12 @@ end
 
 function fail(text)
     error("plgen:error", "%s", text);
+end
+
+function need(good, text)
+    if ! good
+        fail(text);
+    end
 end
 
 function p = named(list)
@@ -503,9 +497,7 @@ end
 
 function write_text(path, text)
     f = fopen(path, "wb");
-    if f < 0
-        fail(["cannot write '", path, "'"]);
-    end
+    need(f >= 0, ["cannot write '", path, "'"]);
     fwrite(f, text);
     fclose(f);
 end
@@ -522,9 +514,7 @@ function path = find_plgen()
     if isempty(path)
         [status, path] = system("command -v plgen");
         path = strtrim(path);
-        if status
-            fail("there is no plgen beside plgen_model.m, nor in PATH; PLGEN names one");
-        end
+        need(status == 0, "there is no plgen beside plgen_model.m, nor in PATH; PLGEN names one");
     end
 end
 
@@ -533,9 +523,7 @@ function path = find_runtime()
     there = fileparts(make_absolute_filename(find_plgen()));
     path = first_of({getenv("PLGEN_RUNTIME"), [there, "/../share/plgen/runtime"], [there, "/../runtime"], ...
                      [here, "/../runtime"], [here, "/../../runtime"]}, "/plrt.h");
-    if isempty(path)
-        fail("the runtime, plrt.h, is not there; PLGEN_RUNTIME names its folder");
-    end
+    need(! isempty(path), "the runtime, plrt.h, is not there; PLGEN_RUNTIME names its folder");
 end
 
 function folder = cache()
@@ -545,9 +533,7 @@ function folder = cache()
     end
     folder = [folder, "/plgen"];
     [status, said] = system(["mkdir -p ", quoted(folder), " 2>&1"]);
-    if status
-        fail(strtrim(said));
-    end
+    need(status == 0, strtrim(said));
 end
 
 function names = tunable_in(c)
@@ -562,9 +548,7 @@ function [words, runtime, key] = compiler()
         words = "cc";
     end
     [status, version] = system([words, " --version 2>&1"]);
-    if status
-        fail(["there is no compiler '", words, "'; CC names another"]);
-    end
+    need(status == 0, ["there is no compiler '", words, "'; CC names another"]);
     runtime = find_runtime();
     words = [words, " -O2 -fPIC -w ", getenv("CFLAGS"), " -I ", quoted(runtime)];
     files = sort([glob([runtime, "/*.c"]); glob([runtime, "/*.h"])]);
@@ -576,9 +560,7 @@ end
 function code = open_code(c)
     [words, runtime, key] = compiler();
     found = regexp(c, '\nextern const pl_modelf? (\w*)_model;', "tokens", "once");
-    if isempty(found)
-        fail("what plgen wrote has no descriptor");
-    end
+    need(! isempty(found), "what plgen wrote has no descriptor");
     folder = cache();
     both = [folder, "/runtimes-", key(1:32), ".o"];
     object = [folder, "/", found{1}, "-", hash("sha256", [key, c])(1:32), ".so"];
@@ -611,8 +593,6 @@ function make(folder, words, c, more, object)
     end
     made = quoted([work, "/model.so"]);
     [status, ~, said] = shell([words, " ", more, " -o ", made], "");
-    if status
-        fail(["the compiler could not make a program of the model:\n", said]);
-    end
+    need(status == 0, ["the compiler could not make a program of the model:\n", said]);
     system(["mv ", made, " ", quoted(object)]);
 end

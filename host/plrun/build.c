@@ -19,7 +19,6 @@ struct toolchain {
 	const char **source;            /* the .c files there */
 	size_t sources;
 	struct hash key;                /* of all this */
-	char *runtime_object;           /* compiled; NULL: not yet */
 };
 
 /* ---- keys and the cache ---- */
