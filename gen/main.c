@@ -457,7 +457,7 @@ static bool publish_all(const struct work *w)
 
 /* ---- over a param ---- */
 
-struct many { const struct work *first; struct work now; };
+struct many { const struct work *first; struct work now; double used, took; }; /* of memory, by the last one */
 
 /* All are of the same text; of later ones what it warns of was said of the first. */
 static void make_one(void *context)
@@ -507,8 +507,10 @@ static const struct model *model_at(void *context, const char *place, const char
 	const bool again = m->now.model;
 	m->now = *m->first;
 	m->now.options.at = place;
-	*why = again && memory_beyond(0.6) ? "memory is near its limit; --at has them"
-					   : unheard_refusal_of(make_one, m);
+	const double used = memory_used();
+	m->took = again && used - m->used > m->took ? used - m->used : m->took;
+	m->used = used;
+	*why = used + 1.25 * m->took > 1 ? "memory is near its limit; --at has them" : unheard_refusal_of(make_one, m);
 	return m->now.model;
 }
 

@@ -23,7 +23,7 @@
 
 /* ---- by time ---- */
 
-#if PL_ORDER > 0 && (PL_IN_PARTS || !PL_CONTACTS)
+#if PL_LOCATES || (PL_ORDER > 0 && PL_IN_PARTS)
 static inline int PL(segment_of)(const PL_TYPE *s)
 {
 #if PL_SEGMENTS > 1

@@ -93,7 +93,7 @@ void  memory_close(void);
 bool  run_deep(void *(*work)(void *), void *context);       /* on a large stack; false: there is no memory for it */
 /* what says that a limit is reached, and ends the program */
 void  memory_on_limit(void (*report)(const char *message));
-bool  memory_beyond(double part);                           /* of LIMIT_BYTES */
+double memory_used(void);                                  /* part of LIMIT_BYTES */
 void *allocate(size_t count, size_t size);                 /* zeroed */
 void *need_memory(void *block);                            /* of a library: NULL ends the program as others do */
 void *enlarge(void *block, size_t count, size_t size);     /* contents kept, the rest undefined */

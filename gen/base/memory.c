@@ -61,9 +61,9 @@ static size_t *size_of(void *block)
 	return (size_t *)block - 1;
 }
 
-bool memory_beyond(double part)
+double memory_used(void)
 {
-	return (double)held > part * LIMIT_BYTES;
+	return (double)held / LIMIT_BYTES;
 }
 
 static size_t kind_of(size_t size)

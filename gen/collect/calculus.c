@@ -387,7 +387,7 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 {
 	if (a->kind == ATOM_PARAM)
 		return place_param(p, a);
-	struct form **x = ARRAY(struct form *, a->operands);
+	SCRATCH struct form **x = ARRAY(struct form *, a->operands);
 	x[0] = place_form(p, a->operand[0]);
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
 		RATIONAL truth = ZERO;
@@ -397,7 +397,11 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	}
 	for (int i = 1; i < a->operands; i++)
 		x[i] = place_form(p, a->operand[i]);
-	return a->kind == ATOM_PRODUCT ? place_product(p, a, x) : kept_again(p->c, a, x);
+	struct form *placed = a->kind == ATOM_PRODUCT ? place_product(p, a, x) : kept_again(p->c, a, x);
+	for (int i = 0; i < a->operands && is_constant(placed); i++) /* else atoms may hold them */
+		if (is_constant(x[i]) && !is_constant(a->operand[i]) && placed != x[i])
+			form_free(x[i]);
+	return placed;
 }
 
 static struct form *place_basis(struct point *p, const struct basis *basis)
@@ -433,8 +437,12 @@ static struct form *place_form(struct point *p, const struct form *form)
 	if (is_constant(form))
 		return form_alias(form);
 	struct form *total = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		form_add_to(total, place_basis(p, &form->term[i].basis), form->term[i].factor);
+	for (int i = 0; i < form->terms; i++) {
+		struct form *part = place_basis(p, &form->term[i].basis);
+		form_add_to(total, part, form->term[i].factor);
+		if (form->term[i].basis.kind != BASIS_ATOM) /* else the point knows it */
+			form_free(part);
+	}
 	return total;
 }
 
@@ -443,6 +451,16 @@ struct point *point_new(struct collector *c, int fixings, const struct fixing *f
 	struct point *p = NEW(struct point);
 	*p = (struct point){ .c = c, .fixings = fixings, .fixing = fixing };
 	return p;
+}
+
+void point_free(struct point *p)
+{
+	for (int i = 0; i < p->count; i++)
+		if (p->known[i] && is_constant(p->known[i]))
+			form_free(p->known[i]);
+	discard(p->known);
+	discard(p->span);
+	discard(p);
 }
 
 void point_at_values(struct point *p)
@@ -460,6 +478,8 @@ struct form *form_at(struct point *p, const struct form *form)
 			known[i] = p->known[i];
 			span[i] = p->span[i];
 		}
+		discard(p->known);
+		discard(p->span);
 		p->known = known;
 		p->span = span;
 		p->count = count;

@@ -127,8 +127,8 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
 bool compare_values(enum comparison comparison, int order);
-/* what scheme exact could treat in its place; "": there is nothing known */
-const char *rewrite_of(const struct node *term);
+/* what scheme exact could treat in its place; "": there is nothing known. force: it is one, and no energy or constraint */
+const char *rewrite_of(const struct node *term, bool force);
 
 /* ---- constant.c: functions of constants; true where the value is exact, else it is the nearest of 256 bits ---- */
 
@@ -257,6 +257,7 @@ struct differentiation *rates_new(struct collector *c,
 struct form *form_rate(struct differentiation *rates, const struct form *form);
 struct point;                       /* t and coordinates fixed; lets are not looked at */
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
+void point_free(struct point *point);                       /* and what forms are at it, where that is a number */
 void point_at_values(struct point *point);                  /* tunable params have the spec's values there */
 /* leaves the statement where the form is not defined there */
 struct form *form_at(struct point *point, const struct form *form);

@@ -50,7 +50,7 @@ static void look_into(struct contents *found, const struct node *node)
 		look_into(found, node->child[i]);
 }
 
-const char *rewrite_of(const struct node *term)
+const char *rewrite_of(const struct node *term, bool force)
 {
 	struct contents found = { 0 };
 	look_into(&found, term);
@@ -62,7 +62,7 @@ const char *rewrite_of(const struct node *term)
 		return "a tunable param in place of the input is exact";
 	if (found.input)
 		return "an input that brings the whole term is exact";
-	if (found.coordinate && !found.several && !found.time)
+	if (force && found.coordinate && !found.several && !found.time)
 		return format("straight pieces in its place, table(%s; ...), are exact",
 			      text_between(found.coordinate->start, found.coordinate->end));
 	return "";
@@ -80,7 +80,7 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 	if (c->closed)
 		error(term->start, NULL, "term '%s' %s: there is no closed form", text_between(term->start, term->end),
 		      why);
-	const char *rewrite = rewrite_of(term);
+	const char *rewrite = rewrite_of(term, true);
 	error(term->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
 				  leaving_schemes(", "), holding_schemes()),
 	      "term '%s' %s: scheme %s cannot treat it", text_between(term->start, term->end), why, c->scheme);

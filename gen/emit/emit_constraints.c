@@ -53,7 +53,13 @@ static const struct form **entries(const struct segment_equations *s, int *count
 	return entry;
 }
 
-/* Rows of all blocks; 0: none depends on the state, or they read inputs, or M at the start is not known */
+bool steps_may_fail(const struct emitter *e)
+{
+	return e->step->taylor.expansion || e->step->collocation;
+}
+
+/* Rows of all blocks, where they are looked at; 0: none depends on the state, or they read inputs, or M at the start is
+ * not known */
 int moving_masses(const struct emitter *e)
 {
 	const struct segment_equations *s = e->model->equations.full;
@@ -61,7 +67,7 @@ int moving_masses(const struct emitter *e)
 	for (int i = 0; s && i < s->masses; rows += s->mass[i++].system.n)
 		if (!s->mass[i].start)
 			return 0;
-	if (rows == 0 || e->model->relative)
+	if (rows == 0 || e->model->relative || !(steps_may_fail(e) || e->model->equations.indefinite))
 		return 0;
 	const struct form **entry = entries(s, &count);
 	const struct reads r = reads_of(e->model, count, entry);
@@ -72,11 +78,6 @@ int moving_masses(const struct emitter *e)
 bool may_be_singular(const struct emitter *e)
 {
 	return moving_masses(e) > 0 && e->model->equations.indefinite;
-}
-
-bool steps_may_fail(const struct emitter *e)
-{
-	return e->step->taylor.expansion || e->step->collocation;
 }
 
 static struct formulas *mass_entries(const struct emitter *e)

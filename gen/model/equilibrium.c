@@ -52,10 +52,12 @@ struct point *point_of(struct linearising *l)
 
 void value_at(struct linearising *l, struct point *point, const struct form *form, mpq_ptr value)
 {
-	const struct form *there = form_at(point, form);
+	struct form *there = form_at(point, form);
 	if (!is_constant(there))
 		error(l->b->spec->name_at, NULL, "a term has no value at the point where the model is linearised");
 	constant_value(&l->b->collector, there, value);
+	if (!is_constant(form))
+		form_free(there);
 }
 
 void find_residuals(struct linearising *l)
@@ -66,6 +68,7 @@ void find_residuals(struct linearising *l)
 	point = point_of(l);
 	for (int i = 0; i < l->n; i++)
 		value_at(l, point, l->residual[i], l->F[i]);
+	point_free(point);
 }
 
 bool is_equilibrium(const struct linearising *l)
@@ -99,6 +102,7 @@ void slopes_at(struct linearising *l, int count, const struct form *const *form,
 	struct point *point = point_of(l);
 	for (int i = 0; i < count; i++)
 		value_at(l, point, by[i], slope[i]);
+	point_free(point);
 	if (!l->looks)
 		return;
 	struct point *always = point_new(&l->b->collector, l->fixings - 1, l->fixing);
@@ -222,17 +226,39 @@ static double *stiffness_at(struct linearising *l)
 		}
 	for (int i = 0; i < n; i++)
 		K[i * (n + 1) + n] = -mpq_get_d(l->F[i]);
+	point_free(point);
 	return K;
 }
 
-static void find_direction(struct linearising *l, double *direction)
+/* Newton's direction by a matrix of stiffness, and -F behind it; false: pivots determine only a part of it */
+static bool direction_by(const struct linearising *l, const double *K, double *direction)
 {
 	const int n = l->n;
-	double *K = stiffness_at(l), *work = ARRAY(double, n * (n + 1));
+	SCRATCH double *work = ARRAY(double, n * (n + 1));
 	memcpy(work, K, sizeof *K * (size_t)(n * (n + 1)));
 	solve_partly(n, work, direction);
-	if (left_of(n, K, direction) > 1e-6 * size_of_residuals(l))
-		fall(l, direction);
+	return left_of(n, K, direction) <= 1e-6 * size_of_residuals(l);
+}
+
+static double largest_of_vector(int n, const double *x)
+{
+	double largest = 0;
+	for (int i = 0; i < n; i++)
+		largest = fmax(largest, fabs(x[i]));
+	return largest;
+}
+
+/* How far the equations are from 0 here: by the direction that Newton's method has with the stiffness at the last
+ * point, which does not depend on units of equations; where it has none by the equations themselves */
+static double distance(const struct linearising *l, double *K, bool solved, double *direction)
+{
+	const int n = l->n;
+	for (int i = 0; i < n; i++)
+		K[i * (n + 1) + n] = -mpq_get_d(l->F[i]);
+	if (!solved)
+		return size_of_residuals(l);
+	direction_by(l, K, direction);
+	return largest_of_vector(n, direction);
 }
 
 /* state = from + part * direction, in BITS bits */
@@ -328,26 +354,30 @@ static void move_back(struct linearising *l)
 /* Steps are halved while they do not bring the equations closer to 0. */
 void find_equilibrium(struct linearising *l)
 {
-	double *direction = ARRAY(double, l->n), size, scale = 0, step = 0;
-	mpq_t *from = rationals((size_t)l->n);
+	SCRATCH double *direction = ARRAY(double, l->n), *next = ARRAY(double, l->n);
+	RATIONALS *from = rationals((size_t)l->n);
+	double scale = 0, step = 0;
 	for (int i = l->n; i < l->states; i++)
 		mpq_set_ui(l->state[i], 0, 1);
 	find_residuals(l);
 	if (!l->slope)
 		derive_residuals(l);
 	for (int k = 0; k < MOST_ITERATIONS && !is_equilibrium(l); k++) {
-		size = size_of_residuals(l);
-		find_direction(l, direction);
-		step = scale = 0;
+		SCRATCH double *K = stiffness_at(l);
+		const bool solved = direction_by(l, K, direction);
+		const double before = solved ? largest_of_vector(l->n, direction) : size_of_residuals(l);
+		if (!solved)
+			fall(l, direction);
+		step = largest_of_vector(l->n, direction);
+		scale = 0;
 		for (int i = 0; i < l->n; i++) {
 			mpq_set(from[i], l->state[i]);
-			step = fmax(step, fabs(direction[i]));
 			scale = fmax(scale, fabs(mpq_get_d(l->state[i])));
 		}
 		if (step <= 1e-60 * scale || (step == 0 && scale == 0))
 			break;
 		double part = 1;
-		for (move(l, from, direction, part); size_of_residuals(l) > size && part > 1e-6; part /= 2)
+		for (move(l, from, direction, part); distance(l, K, solved, next) > before && part > 1e-6; part /= 2)
 			move(l, from, direction, part / 2);
 	}
 	if (!is_equilibrium(l)) {
@@ -432,7 +462,7 @@ static void find_one(void *context)
 void find_equilibria(struct linearising *l)
 {
 	struct equations *e = &l->b->model->equations;
-	for (int most = l->n < 5 ? 32 : 12; e->starts == 0 || (e->starts < most && !memory_beyond(0.3)); e->starts++) {
+	for (int most = l->n < 5 ? 32 : 12; e->starts == 0 || (e->starts < most && memory_used() < 0.3); e->starts++) {
 		bool known = false;
 		start_at(l, e->starts);
 		l->fall = 1e-4;

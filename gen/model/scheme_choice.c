@@ -230,7 +230,7 @@ static void report_atom(void *context)
 {
 	const struct building *b = context;
 	const struct atom *atom = first_atom(b, false);
-	const char *rewrite = rewrite_of(atom->node);
+	const char *rewrite = rewrite_of(atom->node, b->spec->energies == 0);
 	error(atom->node->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
 					leaving_schemes(", "), holding_schemes()),
 	      "'%s' is not piecewise linear: scheme exact cannot treat it",
@@ -258,7 +258,7 @@ static void find_obstacle(void *context)
 	}
 	if (!model->nonlinear.obstacle)
 		return;
-	rewrite = rewrite_of(model->nonlinear.obstacle);
+	rewrite = rewrite_of(model->nonlinear.obstacle, b->spec->energies == 0);
 	model->nonlinear.why = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 

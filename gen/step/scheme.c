@@ -146,8 +146,27 @@ static void build_tuned_step(struct step *step)
 	plan_tuned_blocks(step);
 }
 
+/* Events of a recipe are of what has mass, and what slides without has no equation that gives its velocity alone. */
+static void check_sliders(const struct step *step)
+{
+	const struct model *model = step->model;
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));
+	for (int k = 0; k < model->remainder.force_columns; k++) {
+		const struct form *left = model->schedule.operator[0].left[k];
+		for (const struct form_term **term = terms_within(left, seen); *term; term++) {
+			const struct atom *atom = (*term)->basis.atom;
+			if (atom && atom->kind == ATOM_CALL && atom->function == FN_SLIDE)
+				error(atom->node->start,
+				      "with a small mass it does; scheme exact takes it beside what is piecewise linear",
+				      "scheme %s: friction of what has no mass does not stop at events",
+				      scheme_name(model->scheme));
+		}
+	}
+}
+
 static void build_remainder_step(struct step *step)
 {
+	check_sliders(step);
 	step->layout = layout_of(&step->branch->system, scheme_row(step->model->scheme)->holds_remainder ? 1
 							: step->is.events == EVENTS_NONE ? PARABOLA : 0);
 	build_with_remainder(step);

@@ -148,6 +148,15 @@ sed -e '/^energy/s/, V.*//' "$cases/triple.spec" >turning.spec
 	"$PLGEN" --explain "$root/models/cart_pole.spec" 2>log | grep -qF 'no equation depends on them: x.' &&
 	"$PLGEN" --explain=json "$cases/triple.spec" 2>log | grep -qF '"free": []'
 result $? 'cyclic coordinates and rigid directions'
+# The crane's trolley rests where the beam is lowest, in its middle, and the rope hangs: the modes carry m g there
+"$PLGEN" --equilibrium "$root/models/crane.spec" >log 2>&1
+awk '/^[0-9]+:/ { gsub(/[,;]/, ""); rests = $4 == 10 && $NF == "stable" && $16 == 0; count++
+		w = -1100*9.81/(4e7*20/2*(atan2(0, -1)/20)^4); if (rests && near($7, w) && near($13, -w/81)) found++ }
+	/memory/ { without++ }
+	function near(a, b) { return (a - b)^2 < 1e-18 }
+	END { print count " equilibria, " found + 0 " as by hand, " without + 0 " without poles"
+	      exit !(count == 6 && found == 1 && without == 0) }' log >>log
+result $? 'the equilibria of a crane on its beam, and their poles'
 # What falls has none
 cat >falls.spec <<'SPEC'
 model falls
