@@ -127,7 +127,7 @@ _Noreturn void not_linear(const struct collector *c, const struct node *node, co
 _Noreturn void not_built(const struct collector *c, struct place at, const char *what);
 struct form *constant_call(struct collector *c, const struct node *node, enum function function, const struct form *x);
 bool compare_values(enum comparison comparison, int order);
-/* what scheme exact could treat in its place; "": there is nothing known. force: it is one, and no energy or constraint */
+/* what scheme exact could treat in its place; "": none is known. force: of a force, not of an energy or constraint */
 const char *rewrite_of(const struct node *term, bool force);
 
 /* ---- constant.c: functions of constants; true where the value is exact, else it is the nearest of 256 bits ---- */

@@ -146,7 +146,7 @@ static void build_tuned_step(struct step *step)
 	plan_tuned_blocks(step);
 }
 
-/* Events of a recipe are of what has mass, and what slides without has no equation that gives its velocity alone. */
+/* Events of a recipe are of what has mass: what slides without has no equation that gives its velocity. */
 static void check_sliders(const struct step *step)
 {
 	const struct model *model = step->model;
