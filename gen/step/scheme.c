@@ -157,7 +157,8 @@ static void check_sliders(const struct step *step)
 			const struct atom *atom = (*term)->basis.atom;
 			if (atom && atom->kind == ATOM_CALL && atom->function == FN_SLIDE)
 				error(atom->node->start,
-				      "with a small mass it does; scheme exact takes it beside what is piecewise linear",
+				      "with a small mass it does; scheme exact takes it beside "
+				      "what is piecewise linear",
 				      "scheme %s: friction of what has no mass does not stop at events",
 				      scheme_name(model->scheme));
 		}
