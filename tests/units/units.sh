@@ -12,6 +12,12 @@ export LC_ALL
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
+# plrun compiles only to run, and keeps nothing in the home of who runs this
+. "${0%/*}/../run_cc.sh"
+XDG_CACHE_HOME=$work/cache
+CC=${run_cc%% *}
+CFLAGS=${run_cc#* }
+export XDG_CACHE_HOME CC CFLAGS
 number=0
 failed=0
 
