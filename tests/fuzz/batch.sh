@@ -7,8 +7,8 @@
 #     batch_add ID SPEC       SPEC's lines of comment name its options, as grammar.c has them; ID.again.c: its second
 #     writing, if it is there
 #                             what is wrong goes to ID.wrong; `said` becomes made, refused or broken
-#     batch_build             compiles and links
-#     batch_run ID            the same for its run
+#     batch_build             compiles, links and runs
+#     batch_run ID            the same of its run
 #     batch_coarse ID SPEC    whether that is only further from the truth than a smooth model of a fixed order may be
 #
 # With eighths=yes such a model is added with one by eighths of a step, that the order may be judged.
@@ -433,6 +433,7 @@ batch_build() {
 			-lsundials_cvode -lsundials_arkode -lsundials_nvecserial -lm -o "batch_$cc" >"link_$cc.said" \
 				2>&1 ||
 				sed 's/^/# /' "link_$cc.said" | head -n 20
+		[ ! -x "batch_$cc" ] || xargs "./batch_$cc" <"compiled_$cc.list"
 	done
 }
 
@@ -444,11 +445,11 @@ batch_run() {
 		echo "$cc: the program does not link" >"$id.wrong"
 		return
 	fi
-	"./batch_$cc" "$id" >"$id.ran" 2>"$id.err" </dev/null
-	status=$?
-	if [ $status -ne 0 ]; then
+	status=99
+	[ ! -s "$id.ended" ] || read -r status <"$id.ended"
+	if [ "$status" -ne 0 ]; then
 		{
-			if [ $status -gt 1 ]; then
+			if [ "$status" -gt 1 ]; then
 				said=$(grep -m 2 -e ERROR -e 'runtime error' "$id.err" | tr '\n' ' ')
 				echo "$cc: ends with status $status: $said"
 			fi

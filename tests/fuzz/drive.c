@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* drive NAME: one of the subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed
- * form, and the spec's second writing. Prints what differs, both values, and ends with 1; else a line of the largest
- * differences.
+/* drive NAME...: subjects, by every function that its descriptor has, against CVODE on NAME_rhs, the closed form, and
+ * the spec's second writing. Each runs in a process of its own, forked from this one, which has started once. NAME.ran
+ * gets what differs, both values, and NAME.ended then is 1; else a line of the largest differences. NAME.err is what
+ * sanitizers say.
  *
  * Bounds, over the largest value of any state in the run (of an output: of any output, or state):
  * states against CVODE, rtol 1e-10 or 1e-13: exact 1e-6; a smooth remainder 1e-4, 3e-3 and 5e-2 in order 4,
@@ -32,6 +33,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static double worst_solution;
 
@@ -413,12 +416,12 @@ static void judge_retune(void)
 	free(s), free(w);
 }
 
-int main(int argc, char **argv)
+static int judge(const char *name)
 {
-	for (of = subjects; of->name && (argc < 2 || !is(of->name, argv[1]));)
+	for (of = subjects; of->name && !is(of->name, name);)
 		of++;
 	if (!of->name) {
-		fprintf(stderr, "usage: drive NAME\n");
+		fprintf(stderr, "drive: no subject %s\n", name);
 		return 2;
 	}
 	in_float = !of->model;
@@ -460,4 +463,37 @@ int main(int argc, char **argv)
 	if (complaints == 0)
 		printf("%s: %s, CVODE %.1e, closed form %.1e\n", of->name, of->scheme, worst_truth, worst_solution);
 	return complaints != 0;
+}
+
+static FILE *beside(const char *name, const char *ending, FILE *again)
+{
+	char path[100];
+	snprintf(path, sizeof path, "%s.%s", name, ending);
+	FILE *const file = again ? freopen(path, "w", again) : fopen(path, "w");
+	if (!file) {
+		perror(path);
+		exit(99);
+	}
+	return file;
+}
+
+int main(int argc, char **argv)
+{
+	for (int i = 1; i < argc; i++) {
+		const pid_t child = fork();
+		if (child == 0) {
+			beside(argv[i], "ran", stdout);
+			beside(argv[i], "err", stderr);
+			exit(judge(argv[i]));
+		}
+		int status = 0;
+		if (child < 0 || waitpid(child, &status, 0) != child) {
+			perror(argv[i]);
+			return 99;
+		}
+		FILE *const file = beside(argv[i], "ended", NULL);
+		fprintf(file, "%d\n", WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status));
+		fclose(file);
+	}
+	return 0;
 }
