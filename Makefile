@@ -6,7 +6,7 @@ BUILD = build
 PACKAGES = gcc libc6-dev make meson ninja-build pkgconf libgmp-dev libmpfr-dev libmpfi-dev libmpc-dev libgsl-dev \
 	libtcc-dev gnuplot-nox
 DEMO_PACKAGES = $(PACKAGES) libsundials-dev
-CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang tcc libcmocka-dev valgrind \
+CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang lld tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy python3-pip python3-venv \
 	python3-wheel mypy octave octave-dev octave-control libopenmpi-dev openmpi-bin cmake cppcheck
 

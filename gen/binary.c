@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* An FMU's sources through the system's compiler, in a folder of their own, to the shared object that importers
- * load. */
+/* C through a compiler, in a folder of its own: an FMU's sources to the shared object that importers load, a model to
+ * the WebAssembly of its page. */
 #define _GNU_SOURCE     /* environ */
 #include "command.h"
 
@@ -25,6 +25,33 @@ static const char *inside(const char *folder, const char *name)
 	return format("%s/%s", folder, name);
 }
 
+static const char *new_folder(void)
+{
+	const char *place = getenv("TMPDIR");
+	char *folder = format("%s/plgen.XXXXXX", place && *place ? place : "/tmp");
+	if (mkdtemp(folder))
+		return folder;
+	complain(format("cannot make a folder '%s'", folder), strerror(errno));
+	return NULL;
+}
+
+static char *read_bytes(const char *path, size_t *length)
+{
+	FILE *f = fopen(path, "rb");
+	char *bytes = NULL;
+	size_t got = 1;
+	for (*length = 0; f && got > 0; *length += got) {
+		ENLARGE(bytes, *length + 65536);
+		got = fread(bytes + *length, 1, 65536, f);
+	}
+	const bool whole = f && !ferror(f);
+	if (!whole)
+		complain(format("cannot read '%s'", path), strerror(errno));
+	if (f)
+		fclose(f);
+	return whole ? bytes : NULL;
+}
+
 /* Of sources/fmi3.c its name in the folder; NULL: it is not compiled from */
 static const char *source_name(const struct member *m)
 {
@@ -32,12 +59,12 @@ static const char *source_name(const struct member *m)
 	return strncmp(m->name, sources, sizeof sources - 1) == 0 ? m->name + sizeof sources - 1 : NULL;
 }
 
-static bool write_member(const char *path, const struct member *m)
+static bool write_bytes(const char *path, const char *bytes, size_t length)
 {
 	FILE *f = fopen(path, "wb");
 	if (!f)
 		return false;
-	bool written = fwrite(m->bytes, 1, m->length, f) == m->length;
+	bool written = fwrite(bytes, 1, length, f) == length;
 	return (fclose(f) == 0) & written;
 }
 
@@ -45,7 +72,7 @@ static bool write_sources(const struct fmu *fmu, const char *folder)
 {
 	for (int i = 0; i < fmu->archive.members; i++) {
 		const struct member *m = &fmu->archive.member[i];
-		if (source_name(m) && !write_member(inside(folder, source_name(m)), m))
+		if (source_name(m) && !write_bytes(inside(folder, source_name(m)), m->bytes, m->length))
 			return complain(format("cannot write to '%s'", folder), strerror(errno));
 	}
 	return true;
@@ -107,18 +134,23 @@ static struct words command_of(const struct fmu *fmu, const char *headers, const
 	return w;
 }
 
-static bool compile(const struct words *w)
+/* `made`: what it makes; `advice` follows where that fails, NULL: none */
+static bool compile(const struct words *w, const char *made, const char *advice)
 {
 	pid_t child;
 	int status = 0;
 	int error = posix_spawnp(&child, w->word[0], NULL, NULL, (char *const *)(uintptr_t)w->word, environ);
 	while (!error && waitpid(child, &status, 0) < 0)
 		error = errno == EINTR ? 0 : errno;
+	if (!error && status == 0)
+		return true;
 	if (error)
-		return complain(format("cannot run '%s'", w->word[0]), strerror(error));
-	if (status != 0)
-		return complain(format("the compiler '%s' could not make the FMU's shared object", w->word[0]), NULL);
-	return true;
+		complain(format("cannot run '%s'", w->word[0]), strerror(error));
+	else
+		complain(format("the compiler '%s' could not make %s", w->word[0], made), NULL);
+	if (advice)
+		fprintf(stderr, "note: %s\n", advice);
+	return false;
 }
 
 /* ---- its place in the FMU ---- */
@@ -134,31 +166,62 @@ static const char *platform(int version)
 
 static bool add_object(struct fmu *fmu, const char *object)
 {
-	FILE *f = fopen(object, "rb");
-	if (!f)
-		return complain(format("cannot read '%s'", object), strerror(errno));
-	char *bytes = NULL;
-	size_t length = 0, got;
-	do {
-		ENLARGE(bytes, length + 65536);
-		got = fread(bytes + length, 1, 65536, f);
-		length += got;
-	} while (got > 0);
-	bool whole = !ferror(f);
-	fclose(f);
-	archive_add(&fmu->archive, format("binaries/%s/%s.so", platform(fmu->version), fmu->name), bytes, length);
-	return whole || complain(format("cannot read '%s'", object), NULL);
+	size_t length;
+	const char *bytes = read_bytes(object, &length);
+	if (bytes)
+		archive_add(&fmu->archive, format("binaries/%s/%s.so", platform(fmu->version), fmu->name), bytes,
+			    length);
+	return bytes;
 }
 
 bool add_binary(struct fmu *fmu, const char *headers)
 {
-	const char *place = getenv("TMPDIR");
-	char *folder = format("%s/plgen.XXXXXX", place && *place ? place : "/tmp");
-	if (!mkdtemp(folder))
-		return complain(format("cannot make a folder '%s'", folder), strerror(errno));
+	const char *folder = new_folder();
+	if (!folder)
+		return false;
 	const char *object = format("%s/%s.so", folder, fmu->name);
 	const struct words command = command_of(fmu, headers, folder, object);
-	bool added = write_sources(fmu, folder) && compile(&command) && add_object(fmu, object);
+	bool added = write_sources(fmu, folder) && compile(&command, "the FMU's shared object", NULL) &&
+		     add_object(fmu, object);
 	remove_folder(fmu, folder, object);
 	return added;
+}
+
+/* ---- WebAssembly ---- */
+
+/* Every function that the page calls is exported in the C. Sums stay as they are written; the stack lies below the
+ * data, so that one that is too deep ends the run and spoils nothing. */
+static struct words wasm_command(const char *source, const char *object)
+{
+	static const char *const flags[] = {
+		"--target=wasm32", "-std=c99", "-Os", "-w", "-ffp-contract=off", "-ffreestanding", "-nostdlib",
+		"-mbulk-memory", "-fvisibility=hidden", "-Wl,--no-entry", "-Wl,--strip-all", "-Wl,--stack-first",
+		"-Wl,-z,stack-size=4194304", "-o"
+	};
+	struct words w = { 0 };
+	add_words(&w, "PLGEN_CLANG", "clang");
+	for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+		add(&w, flags[i]);
+	add(&w, object);
+	add(&w, source);
+	return w;
+}
+
+char *wasm_of(const char *code, size_t *length)
+{
+	const char *folder = new_folder();
+	if (!folder)
+		return NULL;
+	const char *source = inside(folder, "page.c"), *object = inside(folder, "page.wasm");
+	const struct words command = wasm_command(source, object);
+	char *bytes = NULL;
+	if (!write_bytes(source, code, strlen(code)))
+		complain(format("cannot write to '%s'", folder), strerror(errno));
+	else if (compile(&command, "the page's WebAssembly",
+			 "it takes clang and wasm-ld, Debian's packages clang and lld; PLGEN_CLANG names a clang"))
+		bytes = read_bytes(object, length);
+	unlink(source);
+	unlink(object);
+	rmdir(folder);
+	return bytes;
 }

@@ -29,6 +29,7 @@ struct options {
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
+	const char *page;               /* the page that is written instead; NULL: none */
 	const char *fmu;                /* the FMU that is written instead; NULL: none */
 	int fmu_version;                /* 2 or 3; 0: not said */
 	bool fmu_binary;                /* with the compiled one; */
@@ -61,6 +62,14 @@ struct step *choose_measured(struct model *stepped, struct request *request);
 
 /* adds the shared object to an FMU; false: it was said why there is none */
 bool add_binary(struct fmu *fmu, const char *headers);
+/* C that exports what is called, as WebAssembly; NULL: it was said why there is none */
+char *wasm_of(const char *code, size_t *length);
+
+/* ---- page.c: a model that runs in a browser ---- */
+
+void add_drawn_outputs(struct spec *spec);      /* one for each number that a drawing reads, behind all others */
+/* where one is asked for: of this C, which has what it needs of the runtime inside; false: it was said why there is none */
+bool write_page(const struct options *options, const struct step *step, struct file *code);
 
 /* ---- sampling.c: steps that nothing is said of ---- */
 

@@ -78,6 +78,8 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	struct spec *spec = parse_spec(source);
 	if (w->given)
 		adopt_units(spec, w->given);
+	if (w->options.page)
+		add_drawn_outputs(spec);
 	return spec;
 }
 
@@ -278,9 +280,10 @@ static bool choose(struct work *w)
 /* Of what is printed the C and its header have derivatives. */
 static bool derive(struct work *w)
 {
-	if (w->options.fmu && w->spec->sensitivities > 0)
-		say_note(w->spec->sensitivity[0].at, "an FMU has the model without its derivatives");
-	return w->options.print > PRINT_HEADER || w->options.fmu || find_derivatives(w->step);
+	const char *without = w->options.fmu ? "an FMU" : w->options.page ? "a page" : NULL;
+	if (without && w->spec->sensitivities > 0)
+		say_note(w->spec->sensitivity[0].at, "%s has the model without its derivatives", without);
+	return w->options.print > PRINT_HEADER || w->options.fmu || w->options.page || find_derivatives(w->step);
 }
 
 /* ---- from a step to texts ---- */
@@ -369,7 +372,7 @@ static bool print_text(struct work *w)
 	measure_board(w);
 	if (w->options.print == PRINT_C && !find_replayed(w->step))
 		return false;
-	w->text = w->options.fmu ? file_inside() : file_new(w->options.output);
+	w->text = w->options.fmu || w->options.page ? file_inside() : file_new(w->options.output);
 	bool printed = statement_guard(print_main_text, w);
 	file_close(w->text);
 	if (!printed)
@@ -396,6 +399,8 @@ static void rewrite(struct work *w, struct file *f)
 {
 	if (has_inside(w, f))
 		file_rewrite(f, w->model->name, print_included);
+	if (w->options.request.own_math)
+		file_rewrite(f, w->model->name, print_own_functions);
 	if (w->options.request.single)
 		file_rewrite(f, w->model->name, print_single);
 	file_rewrite(f, w->model->name, print_apart);
@@ -568,7 +573,7 @@ static bool compile(struct work *w)
 		return false;
 	print_header(w);
 	rewrite_code(w);
-	if (!print_fmu(w))
+	if (!print_fmu(w) || !write_page(&w->options, w->step, w->text))
 		return false;
 	print_names(w);
 	return publish_all(w);

@@ -84,6 +84,13 @@ static void take_accuracy(struct options *options, const char *value)
 	options->request.compensated = true;
 }
 
+static void take_math(struct options *options, const char *value)
+{
+	if (strcmp(value, "own") != 0)
+		wrong_usage(format("--math takes own, found '%s'", value));
+	options->request.own_math = true;
+}
+
 static void take_loads(struct options *options, const char *value)
 {
 	const char *name = strcmp(value, "leftover") == 0 ? "remainder" : value; /* its name in earlier versions */
@@ -139,6 +146,13 @@ static void take_fmu_binary(struct options *options, const char *value)
 {
 	options->fmu_binary = true;
 	options->fmu_headers = value;
+}
+
+/* Its model steps as plrun's does, but for the functions of libm, which WebAssembly has not. */
+static void take_page(struct options *options)
+{
+	if (options->page)
+		options->bundle = options->request.fast = options->request.own_math = true;
 }
 
 static void take_rows(struct options *options, const char *value)
@@ -250,6 +264,7 @@ static const struct row {
 	{ "dark", NULL, "pictures and page light on dark", .flag = AT(look.dark) },
 	{ "paper", NULL, "a picture for print: a column of 85 mm; .pdf has its fonts inside", .flag = AT(look.paper) },
 	{ "report", NULL, "print a page of HTML: equations, modes, pictures, what was chosen", .print = PRINT_REPORT },
+	{ "page", "FILE.html", "write one page that runs the model in a browser; made by clang", .text = AT(page) },
 	{ "rhs", NULL, "also emit NAME_rhs: the equations as written", .flag = AT(rhs) },
 	{ "step", "EXPR", "instead of the spec's step", .text = AT(request.step) },
 	{ "scheme", "NAME", "instead of the spec's: ", .values = all_schemes, .text = AT(request.scheme) },
@@ -259,6 +274,8 @@ static const struct row {
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", .take = take_form },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
 	  .take = take_accuracy },
+	{ "math", "own", "sin, exp, pow and their kin of the runtime: the same bits on every target",
+	  .take = take_math },
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
 	{ "sensitivity", "k,c,x", "also emit derivatives by params, initial values, inputs: NAME_step_d",
 	  .text = AT(request.sensitivity) },
@@ -459,6 +476,7 @@ static void note_all(struct options *options)
 	note_flag(options, "--real float", request->single);
 	note_value(options, "--form", request->form != FORM_AUTO ? step_form_name(request->form) : NULL);
 	note_flag(options, "--accuracy compensated", request->compensated);
+	note_flag(options, "--math own", request->own_math);
 	note_flag(options, "--fast", request->fast);
 	note_value(options, "--refresh", request->refresh ? format("%d", request->refresh) : NULL);
 	note_value(options, "--rows", request->rows ? format("%d", request->rows) : NULL);
@@ -472,6 +490,7 @@ void read_options(int argc, char **argv, struct options *options)
 	options->banner = "";
 	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
+	take_page(options);
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
 	options->request.explained = options->print == PRINT_EXPLAIN || options->print == PRINT_JSON;
 	note_all(options);

@@ -53,6 +53,12 @@ static void check_print(const struct options *options)
 		wrong_usage("--amplitude goes with --response and --plot frf");
 }
 
+static void check_math(const struct options *options)
+{
+	if (options->request.own_math && options->request.single)
+		wrong_usage("--math own is of doubles: it does not go with --real float");
+}
+
 static void check_a2l(const struct options *options)
 {
 	if (options->a2l && (options->print != PRINT_C || options->fmu))
@@ -93,7 +99,7 @@ static bool has_control(const char *text)
 
 static bool is_page(const struct options *options)
 {
-	return options->print == PRINT_REPORT;
+	return options->print == PRINT_REPORT || options->page;
 }
 
 static void check_look(const struct options *options)
@@ -137,6 +143,24 @@ static void check_fmu(const struct options *options)
 			wrong_usage(format("%s does not go with --fmu", against[i].option));
 }
 
+static void check_live_page(const struct options *options)
+{
+	const struct { bool requested; const char *option; } against[] = {
+		{ options->output, "-o" }, { options->fmu, "--fmu" }, { options->a2l, "--a2l" },
+		{ options->print != PRINT_C, option_of_print(options->print) }, { options->rhs, "--rhs" },
+		{ options->request.selftest, "--selftest" }, { options->request.batch, "--batch" },
+		{ options->look.dark, "--dark" }, { options->request.single, "--real float" },
+		{ options->request.sensitivity, "--sensitivity" }
+	};
+	if (!options->page)
+		return;
+	if (!ends_in(options->page, ".html") && !ends_in(options->page, ".htm"))
+		wrong_usage(format("--page takes the name of a page, FILE.html, found '%s'", options->page));
+	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
+		if (against[i].requested)
+			wrong_usage(format("%s does not go with --page", against[i].option));
+}
+
 /* The C includes the header by its name, and in a rule of make the paths stand too. */
 static void check_spelling(const struct options *options, const char *const *path, int paths)
 {
@@ -154,7 +178,7 @@ static void check_spelling(const struct options *options, const char *const *pat
 static void check_names(const struct options *options)
 {
 	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
-			       options->a2l, options->params };
+			       options->a2l, options->params, options->page };
 	enum { PATHS = sizeof path / sizeof *path };
 	check_spelling(options, path, PATHS);
 	for (int i = 0; i < PATHS; i++)
@@ -166,7 +190,9 @@ static void check_names(const struct options *options)
 
 void find_together(struct options *options)
 {
+	check_live_page(options);
 	check_print(options);
+	check_math(options);
 	check_a2l(options);
 	check_equilibrium(options);
 	check_campbell(options);

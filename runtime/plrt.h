@@ -20,6 +20,7 @@
  *     rate.c         the frequency of a load from other params; its phase stays continuous
  *     root.c         n-th roots within 6 %, for step sizes from error estimates
  *     dense.c        systems of linear equations, for Newton's method of implicit schemes
+ *     functions.c    sin, exp, pow and their kin with the same bits on every target: --math own
  *
  * turnsf.c, growthf.c, ... are these files for models in float, which use no double.  Their names have an f:
  * pl_turnf_at is to pl_turn_at as sinf is to sin.  Declarations that differ by the type alone are in plreal.h, under
@@ -256,6 +257,27 @@ float pl_growthf_value(pl_growthf a);
 
 /* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; no floats. */
 enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
+
+/* ---- functions.c: elementary functions, for --math own ------------------------------------------------------- */
+
+/* As the functions of <math.h> without pl_, with the same bits on every target that rounds products before it adds
+ * them: arguments of any size, infinities and NaN as in C99's appendix F.  Off by less than, in units in the last
+ * place: sqrt 0.5 (correctly rounded); log, asin, acos, atan, atan2, exp, pow 0.52; sin, cos 0.6; cosh 1.2; tan, sinh
+ * 2; tanh 2.5. */
+double pl_sin(double x);
+double pl_cos(double x);
+double pl_tan(double x);
+double pl_exp(double x);
+double pl_log(double x);
+double pl_sqrt(double x);
+double pl_sinh(double x);
+double pl_cosh(double x);
+double pl_tanh(double x);
+double pl_asin(double x);
+double pl_acos(double x);
+double pl_atan(double x);
+double pl_pow(double x, double y);
+double pl_atan2(double y, double x);
 
 /* ---- how functions and loops are compiled -------------------------------------------------------------------- */
 

@@ -145,7 +145,8 @@ static void emit_as_written(const struct emitter *e)
 
 static void emit_includes(const struct emitter *e, bool rhs)
 {
-	if (forms_need_math(e) || (rhs && rhs_needs_math(e)) || constraints_need_math(e))
+	if (!e->model->request.own_math &&
+	    (forms_need_math(e) || (rhs && rhs_needs_math(e)) || constraints_need_math(e)))
 		say(e, "\n#include <math.h>\n");
 	if (e->step->program->compensated || e->step->carried.count)
 		say(e, "\n#if PL_EXCESS_PRECISION%s\n"

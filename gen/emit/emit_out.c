@@ -64,9 +64,14 @@ static bool *kept_states(const struct emitter *e, const struct formulas *f)
 	return kept;
 }
 
+static bool is_drawn(const struct emitter *e, int output)
+{
+	return output >= e->model->outputs - e->model->spec->drawn;
+}
+
 static bool is_wanted(const struct emitter *e, int output)
 {
-	return !e->at || e->at->output[output];
+	return (!e->at || e->at->output[output]) && is_drawn(e, output) == e->drawn;
 }
 
 /* Their values; first the highest derivatives that they read, as locals */
@@ -111,7 +116,7 @@ static void emit_input_locals(const struct emitter *e, const bool *wanted)
 	}
 }
 
-void emit_outputs_now(const struct emitter *e)
+static void emit_some_outputs(const struct emitter *e)
 {
 	const struct model *model = e->model;
 	struct formulas *f = formulas_of_outputs(e);
@@ -130,6 +135,19 @@ void emit_outputs_now(const struct emitter *e)
 		say(e, "    double left[%d];\n"
 		       "    %s\n", model->remainder.force_columns, remainder_of_outputs(e));
 	emit_formulas(f, 4);
+}
+
+/* What drawings read stands in a block of its own: what the others share, and so their bits, stays the same. */
+void emit_outputs_now(const struct emitter *e)
+{
+	struct emitter drawn = *e;
+	drawn.drawn = true;
+	emit_some_outputs(e);
+	if (e->model->spec->drawn == 0)
+		return;
+	say(e, "    {\n");
+	emit_some_outputs(&drawn);
+	say(e, "    }\n");
 }
 
 void emit_out(const struct emitter *e)

@@ -9,6 +9,7 @@
 
 typedef void rewriter(FILE *to, const char *text, const char *name); /* of a model of this name */
 rewriter print_included;        /* the runtime's algorithms in the place of the lines that include them, for double */
+rewriter print_own_functions;   /* functions of the runtime in the place of those of <math.h> */
 rewriter print_single;          /* C for double as C for float */
 rewriter print_apart;           /* no local is called as the model */
 bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes, or a header? */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The target float: what is printed for double, with every type, literal and function under its name for float. The
- * numbers are floats already: number.c rounds straight to the target's type. */
+ * numbers are floats already: number.c rounds straight to the target's type. Before that, the runtime's functions in
+ * the place of those of <math.h>. */
 #include "printed.h"
 
 #include <ctype.h>
@@ -23,6 +24,14 @@ static const char *const functions[] = {
 	"fabs", "atan2", "pow", "fmin", "fmax", "copysign"
 };
 
+static bool is_function(const char *text, size_t length)
+{
+	for (size_t i = 0; i < sizeof functions / sizeof *functions && text[length] == '('; i++)
+		if (is_named(text, length, functions[i]))
+			return true;
+	return false;
+}
+
 /* Of a name up to where its f goes; 0: it has none */
 static size_t stem_of(const char *text, size_t length)
 {
@@ -31,10 +40,7 @@ static size_t stem_of(const char *text, size_t length)
 		if (length >= stem && memcmp(text, stems[i], stem) == 0 && (length == stem || text[stem] == '_'))
 			return stem;
 	}
-	for (size_t i = 0; i < sizeof functions / sizeof *functions && text[length] == '('; i++)
-		if (is_named(text, length, functions[i]))
-			return length;
-	return 0;
+	return is_function(text, length) ? length : 0;
 }
 
 static const char *print_name(FILE *to, const char *text)
@@ -85,5 +91,24 @@ void print_single(FILE *to, const char *text, const char *name)
 			text = print_name(to, text);
 		else
 			text = print_other(to, text);
+	}
+}
+
+void print_own_functions(FILE *to, const char *text, const char *name)
+{
+	(void)name;
+	while (*text) {
+		const char *quoted = behind_quoted(text, false);
+		const size_t length = !quoted && in_name(*text) ? name_length(text) : 0;
+		if (quoted) {
+			put(to, text, (size_t)(quoted - text));
+			text = quoted;
+		} else if (length > 0) {
+			put(to, "pl_", is_function(text, length) ? 3 : 0);
+			put(to, text, length);
+			text += length;
+		} else {
+			text = print_other(to, text);
+		}
 	}
 }

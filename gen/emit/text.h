@@ -41,6 +41,7 @@ struct emitter {
 	struct emitter *beside;     /* per block of the step's derivatives: of its model */
 	bool is_beside;             /* it is of such a block, as a model of its own */
 	const struct standing *at;  /* where numbers of derivatives stand; NULL: as they do in s */
+	bool drawn;                 /* of the outputs those alone that a page draws, which else are left out */
 	bool at_state;              /* of a series: what is known beside the state stands in locals */
 	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */
 };

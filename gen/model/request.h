@@ -34,6 +34,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool loads_left;            /* known loads are left to the scheme */
 	bool compensated;           /* two-word arithmetic */
 	bool single;                /* the target's numbers are floats */
+	bool own_math;              /* elementary functions are the runtime's */
 	bool step_open;             /* nothing says how long a step is: one is chosen */
 	bool real_given;            /* that was said: --real */
 	bool selftest;              /* NAME_selftest */

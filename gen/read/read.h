@@ -320,6 +320,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct energy *energy;
 	int drawings;
 	struct drawing *drawing;
+	int drawn;                  /* the last so many outputs are none of the text: drawings of a page read them */
 	int totals;
 	struct total *total;
 	int whens;                      /* in the order in which they act at one instant */

@@ -42,7 +42,7 @@ static const char dark[] =
 
 /* ---- text as HTML ---- */
 
-static const char *escaped(const char *text)
+const char *html_text(const char *text)
 {
 	const char *html = "";
 	for (; *text; text++) {
@@ -132,10 +132,10 @@ static void print_columns(FILE *to, const struct wide_table *t, int first, int l
 {
 	fprintf(to, "<table class=\"%s\">\n<tr><th class=\"name\">%s</th>", t->class, t->corner);
 	for (int j = first; j < last; j++)
-		fprintf(to, "<th>%s</th>", escaped(t->column[j]));
+		fprintf(to, "<th>%s</th>", html_text(t->column[j]));
 	fputs("</tr>\n", to);
 	for (int i = 0; i < t->rows; i++) {
-		fprintf(to, "<tr><th class=\"name\">%s</th>", escaped(t->row[i]));
+		fprintf(to, "<tr><th class=\"name\">%s</th>", html_text(t->row[i]));
 		for (int j = first; j < last; j++)
 			fprintf(to, "<td>%s</td>", t->entry[i * t->columns + j]);
 		fputs("</tr>\n", to);
@@ -180,7 +180,7 @@ static void print_matrices(FILE *to, const struct step *step)
 	const struct model *model = reported_model(step);
 	fprintf(to, "<p>%sP(s) = M s<sup>2</sup> + C s + K, over %s; a row for each equation, as written.</p>\n",
 		is_nonlinear(step) ? "Of the terms that are linear with constant coefficients: " : "",
-		escaped(name_list(model->n, model->names.coord)));
+		html_text(name_list(model->n, model->names.coord)));
 	print_matrix(to, "M", model, model->system.M);
 	print_matrix(to, "C", model, model->system.C);
 	print_matrix(to, "K", model, model->system.K);
@@ -268,9 +268,9 @@ static void print_gains(FILE *to, const struct step *step)
 	fputs("<div class=\"wide\"><table>\n<tr><th class=\"name\">output</th><th class=\"name\">over</th><th>static "
 	      "gain</th><th class=\"name\">zeros [1/s]</th></tr>\n", to);
 	for (int k = 0; k < count; k++)
-		fprintf(to, "<tr><td class=\"name\">%s</td><td class=\"name\">%s</td><td>%s</td><td class=\"name\">%s"
-			    "</td></tr>\n", escaped(labelled(model, t[k].output)), escaped(labelled(model, t[k].drive)),
-			static_gain_text(&t[k]), zeros_text(model, &t[k]));
+		fprintf(to, "<tr><td class=\"name\">%s</td><td class=\"name\">%s</td><td>%s</td><td "
+			    "class=\"name\">%s</td></tr>\n", html_text(labelled(model, t[k].output)),
+			html_text(labelled(model, t[k].drive)), static_gain_text(&t[k]), zeros_text(model, &t[k]));
 	fputs("</table></div>\n", to);
 }
 
@@ -282,7 +282,7 @@ static void print_chosen(FILE *to, const struct step *step)
 		step_form_text(step),
 		readable_text(model->h), target_name());
 	if (model->nonlinear.obstacle && model->nonlinear.why)
-		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", escaped(model->nonlinear.why));
+		fprintf(to, "<p>Not exact as a whole: %s.</p>\n", html_text(model->nonlinear.why));
 	print_words(to, step, text_course);
 }
 
@@ -315,7 +315,7 @@ void print_page(FILE *to, const struct step *step, const char *options, const st
 {
 	const struct model *model = step->shown->model;
 	const char *name = model->delays ? model->delays->name : model->name;
-	const char *title = escaped(look->title ? look->title : name);
+	const char *title = html_text(look->title ? look->title : name);
 	const int inputs = model->delays ? model->delays->inputs : model->system.inputs;
 	fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" "
 		    "content=\"width=device-width,initial-scale=1\"/>\n<title>%s</title>\n<style>\n%s%s</style>\n"
@@ -323,7 +323,7 @@ void print_page(FILE *to, const struct step *step, const char *options, const st
 	fprintf(to, "<p>%d coordinate%s, %d states, %d input%s, %d output%s; plgen " PLGEN_VERSION "%s%s.</p>\n<nav>",
 		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states, inputs,
 		inputs == 1 ? "" : "s", model->outputs,
-		model->outputs == 1 ? "" : "s", *options ? " " : "", escaped(options));
+		model->outputs == 1 ? "" : "s", *options ? " " : "", html_text(options));
 	for (int i = 0; i < SECTIONS; i++)
 		if (is_there(&sections[i], step))
 			fprintf(to, "<a href=\"#s%d\">%s</a>\n", i, sections[i].title);

@@ -263,6 +263,7 @@ void picture_in_page(FILE *to, const struct step *step, const char *kind, bool d
 /* ---- page.c ---- */
 
 /* HTML, with everything in it */
+const char *html_text(const char *text);         /* < > & and quotes escaped */
 void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look);
 
 /* ---- program.c, explain.c, json.c, solution.c ---- */

@@ -203,6 +203,8 @@ int main(int argc, char **argv)
 	s.tools = find_tools();
 	if (s.options.chart)
 		run_chart(s.tools, &s.options);
+	if (s.options.page)
+		make_page(s.tools, &s.options);
 	make_code(&s);
 	s.machine = machine_of(s.tools, s.code, &error);
 	if (!s.machine)

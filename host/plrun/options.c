@@ -65,6 +65,7 @@ static void take_progress(struct options *o, const char *value) { (void)o; (void
 static void take_units(struct options *o, const char *value) { (void)value; o->units = true; }
 static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
 static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
+static void take_page(struct options *o, const char *value) { o->page = value; }
 static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
 
 static void take_log(struct options *o, const char *value)
@@ -230,11 +231,12 @@ static const struct row {
 	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
 	{ "chart", NULL, "error against time of plgen's steps and other solvers, in the folder -o (default: charts)",
 	  take_chart },
+	{ "page", "FILE.html", "in the place of a run one page that runs the model in a browser", take_page },
 	{ "progress", NULL, "how far it is on standard error, also where that is no terminal", take_progress },
 	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
 	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
 	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL }, { "params", "FILE", NULL, NULL },
-	{ "refresh", "N", NULL, NULL },
+	{ "refresh", "N", NULL, NULL }, { "math", "own", NULL, NULL },
 	{ "sensitivity", "LIST", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
 	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
 };
@@ -396,10 +398,21 @@ static void check_fit(const struct options *o)
 			wrong_usage("--fit has derivatives by its own list, and no --sensitivity beside it");
 }
 
+/* What a page shows is chosen on it. */
+static void check_page(const struct options *o)
+{
+	const char *surplus = o->input ? "--input" : o->sweep ? "--sweep" : o->plot ? "--plot" : o->stats ? "--stats"
+			    : o->window ? "--psd" : o->show ? "--show" : o->output ? "-o" : o->chart ? "--chart"
+			    : o->fit ? "--fit" : NULL;
+	if (o->page && surplus)
+		wrong_usage(format("%s does not go with --page: a page has its controls", surplus));
+}
+
 static void check(const struct options *o)
 {
 	check_fit(o);
 	check_chart(o);
+	check_page(o);
 	check_look(o);
 	if (!o->spec)
 		wrong_usage("no spec is given");

@@ -37,7 +37,7 @@
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
  *     fit.c       values of params, so that outputs come closest to what was measured (GSL)
  *     fitted.c    what a fit has found: values, intervals, correlations, profiles, a picture
- *     chart.c     error against time, with other solvers
+ *     chart.c     error against time, with other solvers; a page that runs the model
  *
  * A param that the spec declares tunable changes without compiling (`retune`); any other is given to plgen as -D, and
  * compiled once for each value.  The line of a sweep depends on its params alone: who computes it, and when, does not
@@ -137,6 +137,7 @@ struct options {
 	unsigned long segment;                  /* steps; 0: as the run is long */
 	double overlap;                         /* parts of a segment */
 	bool chart;
+	const char *page;                       /* the page that plgen makes instead of a run; NULL: none */
 	int jobs;                               /* 0: as many as there are cores */
 };
 void read_options(int argc, char **argv, struct options *o);
@@ -448,6 +449,7 @@ void fitted_draw(const struct estimate *e, const struct options *o, const char *
 
 /* ---- chart.c ---- */
 
+_Noreturn void make_page(const struct toolchain *t, const struct options *o);
 _Noreturn void run_chart(const struct toolchain *t, const struct options *o);
 
 /* ---- sweep.c, journal.c, workers.c ---- */

@@ -25,6 +25,7 @@ _plgen() {
         --explain) mapfile -t COMPREPLY < <(compgen -W 'json program' -- "$current"); return ;;
         --real) mapfile -t COMPREPLY < <(compgen -W 'double float' -- "$current"); return ;;
         --accuracy) mapfile -t COMPREPLY < <(compgen -W 'compensated' -- "$current"); return ;;
+        --math) mapfile -t COMPREPLY < <(compgen -W 'own' -- "$current"); return ;;
         --loads) mapfile -t COMPREPLY < <(compgen -W 'exact remainder' -- "$current"); return ;;
         --plot)
             if [ "${command##*/}" = plgen ]; then
@@ -33,7 +34,7 @@ _plgen() {
                 mapfile -t COMPREPLY < <(compgen -f -- "$current")
             fi
             return ;;
-        -o | --depfile | --params | --input | --sweep | --a2l | --fmu)
+        -o | --depfile | --params | --input | --sweep | --a2l | --fmu | --page)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
             --sensitivity | --column | --time | --title | --size | -D) return ;;

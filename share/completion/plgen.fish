@@ -12,9 +12,11 @@ function __plgen_option --description 'Complete one option' --argument-names com
             set how -x -a 'double float'
         case accuracy
             set how -x -a compensated
+        case math
+            set how -x -a own
         case loads
             set how -x -a 'exact remainder'
-        case o depfile params input sweep a2l fmu
+        case o depfile params input sweep a2l fmu page
             set how -r -F
         case plot
             test $command = plgen; and set how -x -a 'response poles modes frf campbell'; or set how -r -F
