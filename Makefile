@@ -124,9 +124,10 @@ chart: demo-deps
 	@ninja -C $(BUILD) plgen >/dev/null
 	@sh bench/charts/own/own.sh $(BUILD)/plgen "$(SPEC)" charts/own "$(UNTIL)" "$(EVERY)"
 
-# The pictures of doc/gallery.md, by plrun
+# The pictures of doc/gallery.md, by plrun; with clang and wasm-ld also $(BUILD)/pages/index.html, models that run
 gallery: all
-	sh bench/gallery.sh $(BUILD)/plrun doc/gallery
+	sh bench/gallery.sh $(BUILD)/plrun doc/gallery \
+		$(if $(shell command -v clang && command -v wasm-ld),$(BUILD)/pages)
 
 # Bytes, stack and instructions on emulated boards: doc/firmware.md
 firmware-report: tests

@@ -1,13 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# gallery.sh PLRUN FOLDER: a picture of each model in models/ into FOLDER, by `plrun --plot`: some hundred points, the
-# same bytes each time. Steps are those of a picture: a linear model is exact at any, a smooth one goes by its series.
+# gallery.sh PLRUN FOLDER [PAGES]: a picture of each model in models/ into FOLDER, by `plrun --plot`: some hundred
+# points, the same bytes each time; into PAGES a page of each that runs it, and an index with the pictures. Steps are
+# those of a picture: a linear model is exact at any, a smooth one goes by its series.
 set -eu
 plrun=$1
 folder=$2
+pages=${3:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$folder"
+mkdir -p "$folder" ${pages:+"$pages"}
 cp models/building.spec "$work"                 # a part, beside the street that is made there
 
 # NAME END STEP [SCHEME]
@@ -85,6 +87,27 @@ campbell() {
 	awk -f bench/svg.awk "$work/picture.svg" >"$folder/$2.svg"
 }
 
+# page NAME: of the spec itself, with all of its outputs
+page() {
+	[ -n "$pages" ] || return 0
+	"${plrun%plrun}plgen" --page "$pages/$1.html" "models/$1.spec" 2>"$work/said" ||
+		{ cat "$work/said" >&2; exit 1; }
+	cp "$folder/$1.svg" "$pages"
+	printf '<a href="%s.html"><img src="%s.svg" alt="">%s</a>\n' "$1" "$1" "$1" >>"$pages/index.html"
+}
+[ -z "$pages" ] || cat >"$pages/index.html" <<'END'
+<!DOCTYPE html>
+<html lang="en">
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width,initial-scale=1">
+<title>Models that run</title>
+<style>
+a { display: inline-block; width: 18rem; margin: .5rem; font: 1rem system-ui }
+img { width: 100%; display: block }
+</style>
+<h1>Models that run</h1>
+END
+
 echo "$lengths" | while read -r name end step scheme; do
 	record "$name" "$end" "$step" >"$work/record.csv"
 	case $name in
@@ -95,7 +118,7 @@ echo "$lengths" | while read -r name end step scheme; do
 		*) shown= ;;
 	esac
 	spec=models/$name.spec
-	[ "$name" != rotor ] || { campbell "$spec" rotor; continue; }
+	[ "$name" != rotor ] || { campbell "$spec" rotor; page rotor; continue; }
 	if [ -n "$shown" ]; then
 		sed "$shown" "$spec" >"$work/$name.spec"
 		spec=$work/$name.spec
@@ -105,4 +128,5 @@ echo "$lengths" | while read -r name end step scheme; do
 	[ ! -s "$work/record.csv" ] || set -- "$@" --input "$work/record.csv"
 	"$plrun" "$@" -o "$work/rows.csv" 2>"$work/said" || { cat "$work/said" >&2; exit 1; }
 	awk -f bench/svg.awk "$work/picture.svg" >"$folder/$name.svg"
+	page "$name"
 done

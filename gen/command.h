@@ -65,12 +65,6 @@ bool add_binary(struct fmu *fmu, const char *headers);
 /* C that exports what is called, as WebAssembly; NULL: it was said why there is none */
 char *wasm_of(const char *code, size_t *length);
 
-/* ---- page.c: a model that runs in a browser ---- */
-
-void add_drawn_outputs(struct spec *spec);      /* one for each number that a drawing reads, behind all others */
-/* where one is asked for: of this C, which has what it needs of the runtime inside; false: it was said why there is none */
-bool write_page(const struct options *options, const struct step *step, struct file *code);
-
 /* ---- sampling.c: steps that nothing is said of ---- */
 
 const char *round_step(double h);  /* [s] 1, 2 or 5 times a power of 10: the largest that is not above h */
@@ -103,6 +97,13 @@ bool spares(int count, const char *const *path);            /* is nothing writte
 void publish(void);
 /* what was read, for make and ninja, where a file is asked for that says it */
 void print_depfile(const struct options *options, const struct spec *spec, const struct model *model);
+
+/* ---- page.c: a model that runs in a browser ---- */
+
+/* of a page one for each number that a drawing reads, behind all others */
+void add_drawn_outputs(const struct options *options, struct spec *spec);
+/* where one is asked for: of C that has what it needs of the runtime inside; false: it was said why there is none */
+bool write_page(const struct options *options, const struct step *step, struct file *code);
 
 /* ---- pieces.c: the runtime, cut ---- */
 

@@ -78,8 +78,7 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	struct spec *spec = parse_spec(source);
 	if (w->given)
 		adopt_units(spec, w->given);
-	if (w->options.page)
-		add_drawn_outputs(spec);
+	add_drawn_outputs(&w->options, spec);
 	return spec;
 }
 

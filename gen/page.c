@@ -26,15 +26,15 @@ static bool is_stop(const struct when *w)
 }
 
 /* Drawings first, then the gaps of stops */
-void add_drawn_outputs(struct spec *spec)
+void add_drawn_outputs(const struct options *options, struct spec *spec)
 {
 	struct node *node[MOST_DRAWN];
-	for (int i = 0; i < spec->drawings; i++) {
+	for (int i = 0; i < spec->drawings && options->page; i++) {
 		const int nodes = nodes_of_drawing(&spec->drawing[i], node);
 		for (int k = 0; k < nodes; k++)
 			add_drawn_output(spec, node[k]);
 	}
-	for (int i = 0; i < spec->whens; i++)
+	for (int i = 0; i < spec->whens && options->page; i++)
 		if (is_stop(&spec->when[i]))
 			add_drawn_output(spec, spec->when[i].gap);
 }
@@ -198,6 +198,122 @@ static void put_base64(FILE *to, const unsigned char *bytes, size_t length)
 	}
 }
 
+/* ---- shorter by what repeats: DEFLATE (RFC 1951), one block of the fixed codes ---- */
+
+enum { WINDOW = 32768, LEAST = 3, MOST_ALIKE = 258, TRIES = 1024, HASHES = 1 << 15 };
+
+struct deflating {
+	unsigned char *to;
+	size_t length;          /* whole bytes */
+	unsigned bits, held;    /* bits that are no byte yet, and how many */
+};
+
+/* The lowest bit first */
+static void put_bits(struct deflating *d, unsigned bits, unsigned count)
+{
+	d->bits |= bits << d->held;
+	for (d->held += count; d->held >= 8; d->held -= 8) {
+		d->to[d->length++] = (unsigned char)d->bits;
+		d->bits >>= 8;
+	}
+}
+
+/* A Huffman code stands with its highest bit first. */
+static void put_code(struct deflating *d, unsigned code, unsigned count)
+{
+	unsigned turned = 0;
+	for (unsigned i = 0; i < count; i++)
+		turned |= (code >> i & 1) << (count - 1 - i);
+	put_bits(d, turned, count);
+}
+
+static void put_symbol(struct deflating *d, unsigned symbol)
+{
+	if (symbol < 144)
+		put_code(d, 0x30 + symbol, 8);
+	else if (symbol < 256)
+		put_code(d, 0x190 + symbol - 144, 9);
+	else if (symbol < 280)
+		put_code(d, symbol - 256, 7);
+	else
+		put_code(d, 0xc0 + symbol - 280, 8);
+}
+
+/* value - `least` in ranges: 2^alike of each width 1, then as many of 2, of 4, ...; which one, and the bits within */
+static unsigned range_of(unsigned value, unsigned alike, unsigned *extra)
+{
+	*extra = 0;
+	while (value >> *extra >= 2u << alike)
+		(*extra)++;
+	return (*extra << alike) + (value >> *extra);
+}
+
+static void put_copy(struct deflating *d, size_t length, size_t distance)
+{
+	unsigned extra = 0, range;
+	range = length == MOST_ALIKE ? 28 : range_of((unsigned)length - LEAST, 2, &extra);
+	extra = length == MOST_ALIKE ? 0 : extra;
+	put_symbol(d, 257 + range);
+	put_bits(d, ((unsigned)length - LEAST) & ((1u << extra) - 1), extra);
+	range = range_of((unsigned)distance - 1, 1, &extra);
+	put_code(d, range, 5);
+	put_bits(d, ((unsigned)distance - 1) & ((1u << extra) - 1), extra);
+}
+
+static unsigned hash_of(const unsigned char *at)
+{
+	return (at[0] | (unsigned)at[1] << 8 | (unsigned)at[2] << 16) * 2654435761u >> 17;
+}
+
+static size_t alike(const unsigned char *a, const unsigned char *b, size_t most)
+{
+	size_t length = 0;
+	while (length < most && a[length] == b[length])
+		length++;
+	return length;
+}
+
+/* The longest text before `at` that is as the one there, of the last few with its first three bytes */
+static size_t longest_before(const unsigned char *bytes, size_t at, size_t length, const size_t *last,
+			     const size_t *before, size_t *distance)
+{
+	const size_t most = length - at < MOST_ALIKE ? length - at : MOST_ALIKE;
+	size_t longest = 0, place = most < LEAST ? 0 : last[hash_of(bytes + at)];
+	for (int k = 0; k < TRIES && place > 0 && at - (place - 1) <= WINDOW; k++, place = before[place - 1]) {
+		const size_t same = alike(bytes + place - 1, bytes + at, most);
+		if (same > longest) {
+			longest = same;
+			*distance = at - (place - 1);
+		}
+	}
+	return longest;
+}
+
+static unsigned char *deflated(const unsigned char *bytes, size_t length, size_t *made)
+{
+	struct deflating d = { .to = ARRAY(unsigned char, length / 8 * 9 + 64) };
+	size_t *last = ARRAY(size_t, HASHES), *before = ARRAY(size_t, length + 1), distance = 0;
+	put_bits(&d, 3, 3);
+	for (size_t at = 0, end; at < length; at = end) {
+		size_t longest = longest_before(bytes, at, length, last, before, &distance), later;
+		if (longest >= LEAST && longest_before(bytes, at + 1, length, last, before, &later) > longest)
+			longest = 0;            /* a letter, then the longer text */
+		end = at + (longest < LEAST ? 1 : longest);
+		if (longest < LEAST)
+			put_symbol(&d, bytes[at]);
+		else
+			put_copy(&d, longest, distance);
+		for (size_t k = at; k < end && k + LEAST <= length; k++) {
+			before[k] = last[hash_of(bytes + k)];
+			last[hash_of(bytes + k)] = k + 1;
+		}
+	}
+	put_symbol(&d, 256);
+	put_bits(&d, 0, 7);
+	*made = d.length;
+	return d.to;
+}
+
 /* ---- SHA-256 (FIPS 180-4), by which the policy names a script ---- */
 
 static uint32_t rotated(uint32_t x, int by)
@@ -358,11 +474,12 @@ static bool print_live_page(FILE *to, const struct step *step, const char *code,
 		    "turned off.</noscript>\n<script type=\"application/json\" id=\"model\">\n", html_text(title),
 		runtime_text("page.css"));
 	const bool ramps = put_json(to, step, title);
-	const char *wasm = wasm_of(code_of_page(step, code, ramps), &length);
+	char *wasm = wasm_of(code_of_page(step, code, ramps), &length);
 	if (!wasm)
 		return false;
+	const unsigned char *shorter = deflated((unsigned char *)wasm, length, &length);
 	fputs("</script>\n<script type=\"text/plain\" id=\"wasm\">", to);
-	put_base64(to, (const unsigned char *)wasm, length);
+	put_base64(to, shorter, length);
 	fprintf(to, "</script>\n<script>%s</script>\n</body>\n</html>\n", runtime_text("page.js"));
 	return true;
 }

@@ -156,22 +156,23 @@ function fourier(re, im) {
 
 /* ---- a page for it ---- */
 
+const withUnit = (v) => v.unit ? v.name + " [" + v.unit + "]" : v.name;
 const text = (value) => Number(value.toPrecision(5)).toString();
 const element = (tag, properties, ...children) => {
   const e = Object.assign(document.createElement(tag), properties);
   e.append(...children);
   return e;
 };
-/* Lines of links, each from (x, y) to (x, y): x in lengths of the link, y in points across it */
-const LINKS = {
-  rod: [0, 0, 1, 0],
-  spring: [0, 0, 0.2, 0, 0.2, 0, 0.25, -6, 0.25, -6, 0.35, 6, 0.35, 6, 0.45, -6, 0.45, -6, 0.55, 6, 0.55, 6, 0.65, -6,
-           0.65, -6, 0.75, 6, 0.75, 6, 0.8, 0, 0.8, 0, 1, 0],
-  damper: [0, 0, 0.45, 0, 0.45, -5, 0.45, 5, 0.3, -7, 0.6, -7, 0.6, -7, 0.6, 7, 0.6, 7, 0.3, 7, 0.6, 0, 1, 0],
-  friction: [0, 0, 0.48, 0, 0.48, -7, 0.48, 7, 0.52, -7, 0.52, 7, 0.52, 0, 1, 0],
-  stop: [0, 0, 0.4, 0, 0.4, -7, 0.4, 7, 0.55, -7, 0.55, 7, 0.55, 0, 1, 0]
+/* Lines through points, x in lengths of what is drawn, y in points across it */
+const LINES = {
+  rod: [[0, 0, 1, 0]],
+  spring: [[0, 0, 0.2, 0, 0.25, -6, 0.35, 6, 0.45, -6, 0.55, 6, 0.65, -6, 0.75, 6, 0.8, 0, 1, 0]],
+  damper: [[0, 0, 0.45, 0], [0.45, -5, 0.45, 5], [0.3, -7, 0.6, -7, 0.6, 7, 0.3, 7], [0.6, 0, 1, 0]],
+  friction: [[0, 0, 0.48, 0], [0.48, -7, 0.48, 7], [0.52, -7, 0.52, 7], [0.52, 0, 1, 0]],
+  stop: [[0, 0, 0.4, 0], [0.4, -7, 0.4, 7], [0.55, -7, 0.55, 7], [0.55, 0, 1, 0]],
+  force: [[0, 0, 1, 0, 0.8, -4], [1, 0, 0.8, 4]],
+  ground: [[0, 0, 1, 0], [0.2, 0, 0, 8], [0.4, 0, 0.2, 8], [0.6, 0, 0.4, 8], [0.8, 0, 0.6, 8], [1, 0, 0.8, 8]]
 };
-const ARROW = [[-14, 0], [14, 0], [8, -4], [14, 0], [8, 4]];
 let labels = 0;
 const labelled = (name, control, ...more) => {
   control.id = control.id || "c" + ++labels;
@@ -206,7 +207,7 @@ class Page {
     const m = this.model, named = new Set(m.outputs.map((o) => o.name));
     const all = m.outputs.map((o, i) => ({...o, column: 1 + i}));
     m.states.forEach((s, i) => { if (!named.has(s.name)) all.push({...s, column: 1 + this.engine.outputs + i}); });
-    return all.map((c) => ({...c, label: c.unit ? c.name + " [" + c.unit + "]" : c.name, factor: c.factor || 1}));
+    return all.map((c) => ({...c, label: withUnit(c), factor: c.factor || 1}));
   }
 
   /* Model seconds in a second: 1, unless its steps are so short or so long that nothing would be seen. */
@@ -228,17 +229,18 @@ class Page {
     this.plane = this.canvas("Phase plane");
     this.spectrum = this.canvas("Amplitude spectrum");
     this.read = element("output", {className: "now"});
+    this.peak = element("output", {className: "now"});
     this.numbers = element("div", {className: "numbers"});
+    const section = (title, ...parts) => element("section", {}, element("h2", {textContent: title}), ...parts);
     document.body.append(
       element("header", {}, element("h1", {textContent: m.title}),
         element("p", {textContent: m.states.length + " states, step " + text(m.h) + " s; the same numbers as plrun"})),
       element("main", {}, this.buttons(), this.said, this.wrong,
         element("div", {className: "panes"},
-          element("section", {}, element("h2", {textContent: "Sketch"}), this.sketch),
-          element("section", {}, element("h2", {textContent: "Scope"}), this.scope, this.read, this.choices()),
-          element("section", {}, element("h2", {textContent: "Phase plane"}), this.plane, this.axes()),
-          element("section", {}, element("h2", {textContent: "Spectrum"}), this.spectrum, this.spectrumOf()),
-          this.tunables(), this.inputs(), this.initials()),
+          section("Sketch", this.sketch), section("Scope", this.scope, this.read, this.choices()),
+          section("Phase plane", this.plane, labelled("Across", this.select("x")), labelled("Up", this.select("y"))),
+          section("Spectrum", this.spectrum, labelled("Of", this.select("of")), this.peak), this.tunables(),
+          this.inputs(), this.initials()),
         this.numbers,
         element("details", {}, element("summary", {textContent: "The model's text"}),
           element("pre", {textContent: m.spec}))));
@@ -269,7 +271,7 @@ class Page {
   change(name, value) {
     this.set[name] = value;
     this.showSettings();
-    this.dirty = true;
+    this.touch();
   }
 
   showSettings() {
@@ -298,13 +300,6 @@ class Page {
     return s;
   }
 
-  axes() { return element("div", {}, labelled("Across", this.select("x")), labelled("Up", this.select("y"))); }
-
-  spectrumOf() {
-    this.peak = element("output", {className: "now"});
-    return element("div", {}, labelled("Of", this.select("of")), this.peak);
-  }
-
   pane(title, rows) {
     return rows.length ? element("section", {className: "controls"}, element("h2", {textContent: title}), ...rows) : "";
   }
@@ -322,7 +317,7 @@ class Page {
       slider.oninput = () => this.tune(i, Number(slider.value) * factor);
       field.onchange = () => this.tune(i, Number(field.value) * factor);
       this.sliders.push({slider, field, factor});
-      return labelled(p.unit ? p.name + " [" + p.unit + "]" : p.name, slider, field);
+      return labelled(withUnit(p), slider, field);
     }));
   }
 
@@ -343,7 +338,7 @@ class Page {
       s.slider.value = this.engine.params[i] / s.factor;
       s.field.value = Number((this.engine.params[i] / s.factor).toPrecision(12));
     });
-    this.dirty = true;
+    this.touch();
   }
 
   inputs() {
@@ -361,8 +356,8 @@ class Page {
       const file = element("input", {type: "file", accept: ".csv,text/csv"});
       file.onchange = () => file.files[0] && file.files[0].text().then((t) => this.record(t));
       this.signalRows.push({kind, fields});
-      return element("fieldset", {}, element("legend", {textContent: input.unit ? input.name + " [" + input.unit + "]"
-        : input.name}), labelled("Signal", kind), field("level", "Level"), field("size", "Amplitude"),
+      return element("fieldset", {}, element("legend", {textContent: withUnit(input)}), labelled("Signal", kind),
+        field("level", "Level"), field("size", "Amplitude"),
         field("rate", "Frequency [Hz], or time of the step [s]"), labelled("Samples", file));
     }));
   }
@@ -397,8 +392,7 @@ class Page {
       field.onchange = () => this.place(i, Number(field.value) * (s.factor || 1));
       return field;
     });
-    return this.pane("Initial values", m.states.map((s, i) => labelled(s.unit ? s.name + " [" + s.unit + "]" : s.name,
-      this.startFields[i])));
+    return this.pane("Initial values", m.states.map((s, i) => labelled(withUnit(s), this.startFields[i])));
   }
 
   place(i, value) {
@@ -421,14 +415,18 @@ class Page {
     this.wake();
   }
 
+  touch() {
+    this.dirty = true;
+    this.wake();
+  }
+
   /* The loop stands still while nothing runs and nothing is to be drawn, or the page is hidden. */
   wake() { if (!this.frame && !document.hidden) this.frame = requestAnimationFrame(this.tick); }
 
   single() {
     this.run(false);
     this.advance(1);
-    this.dirty = true;
-    this.wake();
+    this.touch();
   }
 
   forget() {
@@ -456,8 +454,7 @@ class Page {
     this.engine.wasm.look(0);
     this.history.add(this.engine.rows, 0, this.engine.wasm.time());
     this.showStart();
-    this.dirty = true;
-    this.wake();
+    this.touch();
   }
 
   /* Settings as text behind the page's address: what differs from the spec */
@@ -696,8 +693,7 @@ class Page {
 
   moveCursor(to) {
     this.cursor = Math.min(1, Math.max(0, to));
-    this.dirty = true;
-    this.wake();
+    this.touch();
   }
 
   /* ---- phase plane and spectrum ---- */
@@ -806,7 +802,7 @@ class Page {
     const x = this.left + this.scale * this.drawn(d.at[0]), y = this.base - this.scale * this.drawn(d.at[1]);
     const turn = d.turn < 0 ? 0 : -this.drawn(d.turn);
     if (d.what === "mass") this.drawMass(g, x, y, 20);
-    else if (d.what === "ground") this.drawGround(g, x, y, 40);
+    else if (d.what === "ground") this.drawLink(g, "ground", x - 20, y, x + 20, y);
     else if (d.at.length === 2) {
       this.drawDisc(g, x, y, d.what === "joint" ? 4 : d.radius < 0 ? 14 : this.scale * this.drawn(d.radius), turn,
                     d.what === "wheel");
@@ -835,28 +831,17 @@ class Page {
     g.stroke();
   }
 
-  drawGround(g, x, y, size) {
-    g.beginPath();
-    g.moveTo(x - size / 2, y);
-    g.lineTo(x + size / 2, y);
-    for (let i = 0; i < 5; i++) {
-      g.moveTo(x - size / 2 + (i + 1) * size / 5, y);
-      g.lineTo(x - size / 2 + i * size / 5, y + size / 5);
-    }
-    g.stroke();
-  }
-
   /* A spring is a zigzag, a damper a piston in its cylinder, friction a hatched bar, a stop a gap with a wall. */
   drawLink(g, what, x, y, ex, ey) {
-    const length = Math.hypot(ex - x, ey - y), lines = LINKS[what] || LINKS.rod;
+    const length = Math.hypot(ex - x, ey - y), lines = LINES[what];
     g.save();
     g.translate(x, y);
     g.rotate(Math.atan2(ey - y, ex - x));
     g.beginPath();
-    for (let i = 0; i < lines.length; i += 4) {
-      g.moveTo(lines[i] * length, lines[i + 1]);
-      g.lineTo(lines[i + 2] * length, lines[i + 3]);
-    }
+    for (let k = 0; k < lines.length; k++)
+      for (let i = 0; i < lines[k].length; i += 2)
+        if (i) g.lineTo(lines[k][i] * length, lines[k][i + 1]);
+        else g.moveTo(lines[k][0] * length, lines[k][1]);
     g.stroke();
     g.restore();
   }
@@ -904,7 +889,7 @@ class Page {
     const a = Math.max(from, to), b = Math.min(from, to), x = this.bodyAt(a, column);
     const y = middle + (lane - 0.5) * Math.min(16, size * 0.6);
     if (what === "force") {
-      this.drawArrow(g, x, middle - size / 2 - 8);
+      this.drawLink(g, what, x - 14, middle - size / 2 - 8, x + 14, middle - size / 2 - 8);
     } else if (b < 0 && a > 0) {
       this.drawLink(g, what, x + (lane - 0.5) * 16, middle + size / 2, x + (lane - 0.5) * 16, this.sketch.high - 24);
     } else if (b < 0) {
@@ -915,12 +900,6 @@ class Page {
       const high = middle - size / 2 - 8 - 7 * (a - b - 1);
       this.drawLink(g, what, this.bodyAt(b, column), high, x, high);
     }
-  }
-
-  drawArrow(g, x, y) {
-    g.beginPath();
-    for (const [dx, dy] of ARROW) g.lineTo(x + dx, y + dy);
-    g.stroke();
   }
 
   /* ---- initial values by dragging ---- */
@@ -949,39 +928,29 @@ class Page {
     }
     const d = this.model.draw.find((x) => x.at.includes(this.held)), k = d.at.indexOf(this.held) & ~1;
     const goal = [(px - this.left) / this.scale, (this.base - py) / this.scale];
-    for (let turn = 0; turn < 8; turn++) this.approach(d.at[k], d.at[k + 1], goal);
+    for (let turn = 0; turn < 20; turn++) this.approach(d.at[k], d.at[k + 1], goal);
   }
 
-  /* A step of least squares towards coordinates at which the outputs (x, y) are the goal, by differences */
+  /* A step down the slope of the distance from the goal to the outputs (x, y), by differences of the coordinates */
   approach(x, y, goal) {
-    const e = this.engine, n = this.model.coords, from = Float64Array.from(e.start);
-    const place = () => {
+    const e = this.engine, from = Float64Array.from(e.start), place = () => {
       e.y.set(e.start);
       e.wasm.set(0);
       e.wasm.look(0);
       return [x < 0 ? 0 : e.rows[1 + x], y < 0 ? 0 : e.rows[1 + y]];
     };
-    const at = place(), slope = [];
-    for (let i = 0; i < n; i++) {
-      const d = 1e-6 * (1 + Math.abs(from[i]));
-      e.start[i] = from[i] + d;
+    const at = place(), [rx, ry] = [goal[0] - at[0], goal[1] - at[1]], slopes = [];
+    for (let i = 0; i < this.model.coords; i++) {
+      e.start[i] = from[i] + 1e-6;
       const moved = place();
       e.start[i] = from[i];
-      slope.push([(moved[0] - at[0]) / d, (moved[1] - at[1]) / d]);
+      slopes.push([(moved[0] - at[0]) * 1e6, (moved[1] - at[1]) * 1e6]);
     }
-    const rx = goal[0] - at[0], ry = goal[1] - at[1];
-    let a = 1e-9, b = 0, c = 1e-9;
-    for (const [u, v] of slope) {
-      a += u * u;
-      b += u * v;
-      c += v * v;
-    }
-    const damp = 1e-3 * (a + c), det = (a + damp) * (c + damp) - b * b;
-    const p = ((c + damp) * rx - b * ry) / det, q = ((a + damp) * ry - b * rx) / det;
-    for (let i = 0; i < n; i++) {
-      const move = slope[i][0] * p + slope[i][1] * q;
-      if (Number.isFinite(move)) e.start[i] = from[i] + Math.max(-0.5, Math.min(0.5, move));
-    }
+    /* The step that is best along that slope, at most half a unit of a coordinate */
+    const down = slopes.map(([u, v]) => u * rx + v * ry);
+    const sum = (k) => slopes.reduce((s, d, i) => s + d[k] * down[i], 0);
+    const along = down.reduce((s, d) => s + d * d, 0) / (sum(0) ** 2 + sum(1) ** 2 || 1);
+    down.forEach((d, i) => { e.start[i] = from[i] + Math.max(-0.5, Math.min(0.5, along * d || 0)); });
   }
 
   /* ---- events of the page ---- */
@@ -1008,7 +977,7 @@ class Page {
       this.run(this.resumes);
     };
     this.scope.onpointermove = (event) => this.moveCursor(event.offsetX / this.scope.wide);
-    this.scope.onpointerleave = () => { this.cursor = undefined; this.dirty = true; this.wake(); };
+    this.scope.onpointerleave = () => { this.cursor = undefined; this.touch(); };
     this.scope.onkeydown = (event) => {
       const by = {ArrowLeft: -0.01, ArrowRight: 0.01, Home: -1, End: 1}[event.key];
       if (by === undefined) return;
@@ -1031,7 +1000,7 @@ class Page {
       if (file && this.model.inputs.length) file.text().then((t) => this.record(t));
     });
     window.addEventListener("beforeprint", () => this.printNumbers());
-    window.addEventListener("resize", () => { this.dirty = true; this.wake(); });
+    window.addEventListener("resize", () => { this.touch(); });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.colours(); this.wake(); });
   }
 
@@ -1057,10 +1026,11 @@ class Page {
 
 /* ---- the start ---- */
 
-/* The functions of the WebAssembly that the page has as text */
+/* The functions of the WebAssembly that the page has as text, compressed */
 async function compiled(letters) {
   const bytes = Uint8Array.from(atob(letters), (c) => c.charCodeAt(0));
-  return (await WebAssembly.instantiate(bytes)).instance.exports;
+  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  return (await WebAssembly.instantiate(await new Response(whole).arrayBuffer())).instance.exports;
 }
 
 async function open() {
