@@ -151,8 +151,20 @@ function span(    own) {
 	plain[spans] = own == ""
 	return own == "" ? "" : "<tspan" own ">"
 }
+# A power's exponent in the letters that there are for it: 10 with a raised -12 takes 9 bytes, not 46
+function with_exponent(text,    at, exponent, i) {
+	at = match(text, /<tspan font-size="[0-9]+" dy="-[0-9]+">-?[0-9]+<\/tspan>$/)
+	if (!at) return text
+	exponent = substr(text, at)
+	gsub(/<[^>]*>/, "", exponent)
+	text = substr(text, 1, at - 1)
+	if (sub(/^-/, "", exponent)) text = text "⁻"
+	for (i = 1; i <= length(exponent); i++) text = text RAISED[substr(exponent, i, 1)]
+	return text
+}
 function end_of_text() {
 	gsub(/<tspan[^>]*><\/tspan>$/, "", content)
+	content = with_exponent(content)
 	gsub(/\n/, " ", content); gsub(/  /, " \\&#160;", content)
 	if (content != "") hold("text" SUBSEP key, "<text" place ">" content "</text>\n")
 }
@@ -204,7 +216,11 @@ function other(    text, i, length_name, part) {
 		}
 	body = body "<" text ">\n"
 }
-BEGIN { RS = "<" }
+BEGIN {
+	RS = "<"
+	split("⁰ ¹ ² ³ ⁴ ⁵ ⁶ ⁷ ⁸ ⁹", raised, " ")
+	for (i = 0; i < 10; i++) RAISED[i] = raised[i + 1]
+}
 {
 	end = index($0, ">")
 	tag = substr($0, 1, end - 1); text = substr($0, end + 1)
@@ -231,7 +247,6 @@ name == "title" && curve {
 	if (text !~ /using|gnuplot_plot/) { body = body "<g><title>" text "</title>\n"; titled = 1 }
 	next
 }
-name == "desc" { by = tolower(text); sub(/^produced by /, "", by); sub(/ *$/, "", by) }
 name == "title" || name == "/title" || name == "desc" || name == "/desc" || name == "/svg" || name == "/text" {
 	if (name == "/text") { writing = 0; end_of_text() }
 	next
@@ -265,7 +280,6 @@ END {
 	end_of_segment()
 	print "<svg" said("width", wide) said("height", high) said("viewBox", view) \
 		" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
-	print "<!-- " by " -->"
 	if (markers) {
 		printf "<style>marker { overflow: visible; fill: none }</style>\n<defs>\n"
 		for (m = 1; m <= markers; m++) {
