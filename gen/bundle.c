@@ -261,9 +261,9 @@ static void print_bundled(FILE *to, const char *text, const void *context)
 	print_with(to, b->runtime, text, b->header);
 }
 
-void bundle(struct file *code, struct file *header, const char *more, bool single, bool kept)
+void bundle(struct file *code, struct file *header, const char *more, bool single, const char *variant)
 {
-	struct runtime *r = runtime_read(single, kept);
+	struct runtime *r = runtime_read(single, variant);
 	list_owners(r);
 	rename_all(r);
 	list_owners(r);

@@ -120,7 +120,9 @@ struct include { const char *file, *header; };      /* both without the ending *
 struct owner { const char *name; int piece; };
 struct runtime {
 	bool single;            /* for models in float */
-	bool kept;              /* for piecewise-linear ones whose state has two words */
+	/* files of piecewise-linear ones: "_compensated" whose state has two words, "_d" that have derivatives; NULL:
+	 * neither */
+	const char *variant;
 	struct piece *piece;
 	int pieces;
 	struct owner *owner;    /* who has a name, by names, of the same in the order of the pieces */
@@ -130,13 +132,13 @@ struct runtime {
 	const char **from, **to; /* names that stand for others in float, or of states in two words */
 	int aliases, floats;    /* so many; of those in float the first */
 };
-struct runtime *runtime_read(bool single, bool kept);
+struct runtime *runtime_read(bool single, const char *variant);
 const char *next_word(const char **at, size_t *length);     /* of C outside comments and strings; NULL: no more */
 
 /* ---- bundle.c: a model with the runtime inside ---- */
 
 /* Header NULL: the C has all. `more`: C that includes the header and finds there what it uses; NULL: none is known;
- * kept: of two words an entry of the state */
-void bundle(struct file *code, struct file *header, const char *more, bool single, bool kept);
+ * variant: as of struct runtime */
+void bundle(struct file *code, struct file *header, const char *more, bool single, const char *variant);
 
 #endif

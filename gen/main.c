@@ -414,7 +414,10 @@ static void rewrite_code(struct work *w)
 		rewrite(w, w->header);
 	if (w->options.bundle || w->options.fmu)
 		bundle(w->text, w->header, w->options.fmu ? runtime_text("plfmu.h") : NULL,
-		       w->options.request.single, w->options.request.compensated);
+		       w->options.request.single,
+		       w->options.request.compensated             ? "_compensated"
+		       : w->step->derivatives && w->step->derivatives->varied ? "_d"
+								  : NULL);
 	if (w->options.print == PRINT_HEADER)
 		mark_pair(NULL, w->text);
 	else if (w->header)

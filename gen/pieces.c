@@ -185,6 +185,11 @@ static void take_line(struct reader *f, const char *line, const char *end)
 	f->comment = f->text = "";
 }
 
+static bool is_variant(const struct runtime *r, const char *variant)
+{
+	return r->variant && strcmp(r->variant, variant) == 0;
+}
+
 /* Names that are decided here: 1 defined, 0 not, -1 another name */
 static int decided(const struct runtime *r, const char *name)
 {
@@ -192,7 +197,9 @@ static int decided(const struct runtime *r, const char *name)
 	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0 || strcmp(name, "PL_SINGLE") == 0)
 		return r->single;
 	if (strcmp(name, "STATE_IS_COMPENSATED") == 0)
-		return r->kept;
+		return is_variant(r, "_compensated");
+	if (strcmp(name, "WITH_DERIVATIVES") == 0)
+		return is_variant(r, "_d");
 	if (strcmp(name, "__cplusplus") == 0)
 		return 0;
 	return length > 2 && strncmp(name, "PL", 2) == 0 && strcmp(name + length - 2, "_H") == 0 ? 0 : -1;
@@ -229,6 +236,26 @@ static bool take_condition(struct reader *f, const char *line)
 	return true;
 }
 
+/* Hooks for derivatives, empty where there are none: lines of VARIED and SET_VARIATION, the word AND_VARIATION */
+static const char *without_hooks(const struct runtime *r, const char *text)
+{
+	if (is_variant(r, "_d") || !strstr(text, "VARI"))
+		return text;
+	char *copy = ARRAY(char, strlen(text) + 1), *to = copy;
+	for (const char *line = text, *end; *line; line = end) {
+		end = strchr(line, '\n') ? strchr(line, '\n') + 1 : line + strlen(line);
+		const char *word = line + strspn(line, " "), *last = strstr(line, " AND_VARIATION)");
+		if (strncmp(word, "VARIED(", 7) == 0 || strncmp(word, "SET_VARIATION(", 14) == 0)
+			continue;
+		for (; line < end; line++)
+			if (line == last)
+				line += strlen(" AND_VARIATION") - 1;
+			else
+				*to++ = *line;
+	}
+	return copy;
+}
+
 /* #include, and #define of what is decided or of another name in float; false: the line is another one */
 static bool take_directive(struct reader *f, const char *line)
 {
@@ -239,7 +266,7 @@ static bool take_directive(struct reader *f, const char *line)
 		return true;
 	if (sscanf(line, "#include \"%63[^\"]\"", name) == 1) {
 		if (!stands_alone(name)) {
-			read_lines(f, runtime_text(name));
+			read_lines(f, without_hooks(r, runtime_text(name)));
 			return true;
 		}
 		*MORE(r->include, r->includes) = (struct include){ f->file, without_ending(name) };
@@ -293,13 +320,13 @@ static void read_file(struct runtime *r, const char *name)
 		if (strcmp(r->piece[i].file, f.file) == 0)
 			return;
 	const char *rest = strstr(runtime_text(name), "#define PL(") ? full_text(name) : runtime_text(name);
-	read_lines(&f, rest);
+	read_lines(&f, without_hooks(r, rest));
 }
 
 /* ---- all of it ---- */
 
 /* Files of one type: growthf.c beside growth.c is of floats, guards_compensated.c beside guards.c of states in two
- * words. Not those of FMUs: they have a model inside. */
+ * words, guards_d.c of states with derivatives. Not those of FMUs: they have a model inside. */
 static bool serves(const struct runtime *r, const char *name)
 {
 	size_t length = strlen(name);
@@ -308,18 +335,24 @@ static bool serves(const struct runtime *r, const char *name)
 	int stem = (int)length - 2;
 	bool single = name[stem - 1] == 'f' && runtime_text(format("%.*s.c", stem - 1, name));
 	stem -= single;
-	static const char suffix[] = "_compensated";
-	const int behind = (int)strlen(suffix);
-	bool compensated = stem > behind && strncmp(name + stem - behind, suffix, strlen(suffix)) == 0;
-	bool both = compensated || runtime_text(format("%.*s%s.c", stem, name, suffix));
-	return single == r->single && (compensated == r->kept || !both);
+	static const char *const variants[] = { "_compensated", "_d" };
+	const char *own = NULL;
+	bool other = false;
+	for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+		const int behind = (int)strlen(variants[i]);
+		if (stem > behind && strncmp(name + stem - behind, variants[i], (size_t)behind) == 0)
+			own = variants[i];
+		other = other || (is_variant(r, variants[i]) &&
+				  runtime_text(format("%.*s%s.c", stem, name, variants[i])));
+	}
+	return single == r->single && (own ? is_variant(r, own) : !other);
 }
 
-struct runtime *runtime_read(bool single, bool kept)
+struct runtime *runtime_read(bool single, const char *variant)
 {
 	struct runtime *r = NEW(struct runtime);
 	r->single = single;
-	r->kept = kept;
+	r->variant = variant;
 	read_file(r, "plrt.h");
 	r->floats = r->aliases;
 	for (int i = 0; runtime_name(i); i++)

@@ -3,7 +3,9 @@
  * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first
  * crossing is isolated before it is computed, so none is stepped over. */
 #ifndef STATE_IS_COMPENSATED
+#ifndef WITH_DERIVATIVES
 #include "columns.h"
+#endif
 #endif
 #include "ladder.h"
 #include "roots.h"
@@ -207,8 +209,40 @@ static void take_up(const pl_switching *m, instant *at, real time)
     }
 }
 
+#ifdef WITH_DERIVATIVES
+
+static void meet_breakpoint(const pl_switching *m, instant *at, int function, int breakpoint)
+{
+    pl_variation *v = at->v;
+    int p;
+    if (v == NULL) {
+        return;
+    }
+    leave_field(m, at);
+    for (p = 0; p < v->columns; p++) {
+        v->dg[p] = off_breakpoint(m, v, p, function, breakpoint, at->x);
+    }
+    meet(m, at, m->row + (ptrdiff_t)function * m->size, function);
+}
+
+static int projects(const pl_switching *m, instant *at)
+{
+    (void)m;
+    (void)at;
+    return 0;
+}
+
+static void vary_held(const pl_switching *m, instant *at)
+{
+    (void)m;
+    (void)at;
+}
+
+#endif
+
 static int pass(const pl_switching *m, instant *at, const event *e, real time)
 {
+    VARIED(meet_breakpoint(m, at, e->expression, e->breakpoint);)
     const int listed = list(m->max_events, at->c, at->crossing, time, e->expression, e->breakpoint, e->upward);
     enter(m->matrix, at->c, at->c->region + (e->upward ? e->stride : -e->stride));
     return listed ? GO_ON : SEARCH_NO_MORE;
@@ -216,16 +250,20 @@ static int pass(const pl_switching *m, instant *at, const event *e, real time)
 
 #include "pieces.h"
 
-void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *c, pl_crossing *crossing,
+                          real *work AND_VARIATION)
 {
     instant at;
     at.x = x;
     at.c = c;
     at.crossing = crossing;
     at.work = work;
+    SET_VARIATION(at);
     c->crossings = 0;
     (void)go(m, &at, tau, 1);
 }
+
+#ifndef WITH_DERIVATIVES
 
 void pl_switching_step(const pl_switching *m, real *x, pl_contact *c, pl_crossing *crossing, real *work)
 {
@@ -352,4 +390,5 @@ real pl_series_switching_next(const pl_series_switching *m, const real *c, const
     return any ? first * end : -1;
 }
 
+#endif
 #endif

@@ -7,6 +7,12 @@
  *     PL_SLOPED                  1: it is
  *     PL_BESIDE                  1: models of their own go beside it: members left, time, PL(init_beside)(ds)
  *     PL_BY_PHI                  1: PL(Phi) is what every step does to the state
+ *     PL_SCALED                  1: the largest size of each state is in ds->scale
+ *
+ *     PL_OUT_SIZE                of x, of which outputs are rows: PL(out_row)[segment][output][];
+ *                                PL(columns)(s, ds, x, S) sets x and what of it varies, but for the states;
+ *                                PL(out_first), PL(out_varied): the entries of the rows' derivatives.  0: PL(out_d) is
+ *                                there already
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
@@ -30,6 +36,11 @@ void PL(set_d)(PL(d) *ds, real S[PL_DERIVATIVES][PL_STATES])
             ds->s[p][i] = S == NULL ? 0 : S[p][i];
         }
     }
+#if PL_SCALED
+    for (i = 0; i < PL_STATES; i++) {
+        ds->scale[i] = 0;
+    }
+#endif
     ds->status = 0;
 }
 
@@ -75,6 +86,36 @@ void PL(hold_d)(PL(d) *ds, const real du[PL_INPUTS])
     int i;
     for (i = 0; i < PL_INPUTS; i++) {
         ds->du[i] = du[i];
+    }
+}
+#endif
+
+#if PL_OUT_SIZE > 0
+/* Outputs are rows over x, which vary too. */
+void PL(out_d)(const PL_TYPE *s, const PL(d) *ds, real J[PL_OUTPUTS][PL_DERIVATIVES])
+{
+    real x[PL_OUT_SIZE], S[PL_DERIVATIVES][PL_OUT_SIZE] = {{0}};
+#if PL_SEGMENTS > 1
+    const int segment = s->segment;
+#else
+    const int segment = 0;
+#endif
+    int i, j, p;
+    PL(columns)(s, ds, x, S);
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        const int *first = PL(out_first) + p * PL_SEGMENTS + segment;
+        for (i = 0; i < PL_STATES; i++) {
+            S[p][i] = ds->s[p][i];
+        }
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            J[i][p] = 0;
+            for (j = 0; j < PL_OUT_SIZE; j++) {
+                J[i][p] += PL(out_row)[segment][i][j] * S[p][j];
+            }
+        }
+        for (j = first[0]; j < first[1]; j++) {
+            J[PL(out_varied)[j].row][p] += PL(out_varied)[j].value * x[PL(out_varied)[j].column];
+        }
     }
 }
 #endif

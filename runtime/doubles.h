@@ -93,3 +93,15 @@
 #undef pl_turn_at
 #undef pl_two
 #undef pl_until
+#undef pl_guards_start_d
+#undef pl_switching_start_d
+#undef pl_guards_advance_d
+#undef pl_guards_change_d
+#undef pl_switching_advance_d
+#undef pl_variation
+#undef pl_variation_change
+#undef pl_varied
+#undef pl_saltation_time
+#undef pl_saltation_pass
+#undef pl_saltation_grazes
+#undef pl_saltation_misses

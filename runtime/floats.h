@@ -93,3 +93,15 @@
 #define pl_turn_at pl_turnf_at
 #define pl_two pl_twof
 #define pl_until pl_untilf
+#define pl_guards_start_d pl_guardsf_start_d
+#define pl_switching_start_d pl_switchingf_start_d
+#define pl_guards_advance_d pl_guardsf_advance_d
+#define pl_guards_change_d pl_guardsf_change_d
+#define pl_switching_advance_d pl_switchingf_advance_d
+#define pl_variation pl_variationf
+#define pl_variation_change pl_variationf_change
+#define pl_varied pl_variedf
+#define pl_saltation_time pl_saltationf_time
+#define pl_saltation_pass pl_saltationf_pass
+#define pl_saltation_grazes pl_saltationf_grazes
+#define pl_saltation_misses pl_saltationf_misses

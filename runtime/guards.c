@@ -35,6 +35,7 @@ static instant instant_of(const pl_guards *m, real *x, pl_contact *c, pl_crossin
     at.time = 0;
     at.before = c->region;
     at.chain = no_impact(m->h);
+    VARIED(at.v = (pl_variation *)0;)
     return at;
 }
 
@@ -227,6 +228,7 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
     uint32_t acted = 0;
     at->time = time;
     at->before = at->c->region;
+    VARIED(meet_guard(m, at, e->guard);)
     if (g->impact < 0) {
         chain->full = !has_time(chain) || !has_listed(m, at, rest >= 0 && m->impact[rest].restitution < 1, at->time,
                                                       g->expression, g->breakpoint, g->upward);
@@ -298,9 +300,11 @@ static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, r
     return 1;
 }
 
-void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_crossing *crossing,
+                      real *work AND_VARIATION)
 {
     instant at = instant_of(m, x, c, crossing, work);
+    SET_VARIATION(at);
     at.time = time;
     c->crossings = 0;
     decide_anew(m, &at, 1);
@@ -328,10 +332,12 @@ static void check_places(const pl_guards *m, const instant *at)
     }
 }
 
-void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing, real *work)
+void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_crossing *crossing,
+                       real *work AND_VARIATION)
 {
     instant at = instant_of(m, x, c, crossing, work);
     const int holds = m->hold[c->region] >= 0;
+    SET_VARIATION(at);
     c->crossings = 0;
     if (holds && !is_taken_up(m, c, x, work)) {
         take_up(m, &at, 0);
@@ -342,6 +348,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
 }
 
 #ifndef STATE_IS_COMPENSATED
+#ifndef WITH_DERIVATIVES
 #ifndef REAL_IS_FLOAT
 
 /* row . x as dot, but for what is 0 in the row: where products are calls, a look at the row costs less. */
@@ -380,5 +387,6 @@ void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl
     c->crossings = 0;
 }
 
+#endif
 #endif
 #endif

@@ -32,6 +32,112 @@ static void assign(const pl_guards *m, int set, real *x, real *work)
     }
 }
 
+/* ---- derivatives ---- */
+
+#ifdef WITH_DERIVATIVES
+
+static int is_hold(const pl_guards *m, int expression, int interval);
+
+/* The derivative of the assignments of a set; before x has them */
+static void vary_set(const pl_guards *m, instant *at, int set)
+{
+    pl_variation *v = at->v;
+    const int n = m->size;
+    int p, k;
+    if (v == NULL || set < 0) {
+        return;
+    }
+    for (p = 0; p < v->columns + v->pending; p++) {
+        real *S = v->S + (ptrdiff_t)p * n;
+        for (k = m->set[set]; k < m->set[set + 1]; k++) {
+            real value = dot(n, m->value + (ptrdiff_t)k * WORDS * n, S);
+            if (p < v->columns) {
+                value += varied_row(v, p, v->matrices + OF_ASSIGNMENTS, k, n, at->x);
+            }
+            v->work[k - m->set[set]] = value;
+        }
+        for (k = m->set[set]; k < m->set[set + 1]; k++) {
+            S[m->state[k]] = v->work[k - m->set[set]];
+        }
+    }
+}
+
+/* Of x - (e - b) back, put on the guard of an impact */
+static void vary_place(const pl_guards *m, instant *at, const pl_impact *impact, const real *back)
+{
+    pl_variation *v = at->v;
+    const int n = m->size, function = impact->expression;
+    int p, i;
+    for (p = 0; v != NULL && p < v->columns + v->pending; p++) {
+        real *S = v->S + (ptrdiff_t)p * n, off = dot(n, m->row + (ptrdiff_t)function * n, S);
+        if (p < v->columns) {
+            off += off_breakpoint(m, v, p, function, impact->breakpoint, at->x);
+        }
+        for (i = 0; i < n; i++) {
+            S[i] -= back[i] * off;
+        }
+    }
+}
+
+/* Of what is held in its place */
+static void vary_held(const pl_guards *m, instant *at)
+{
+    if (at->v != NULL) {
+        vary_set(m, at, m->hold[at->c->region]);
+    }
+}
+
+static void meet_guard(const pl_guards *m, instant *at, int k)
+{
+    pl_variation *v = at->v;
+    const pl_guard *g = &m->guard[k];
+    int p;
+    if (v == NULL) {
+        return;
+    }
+    leave_field(m, at);
+    for (p = 0; p < v->columns; p++) {
+        v->dg[p] = varied_row(v, p, v->matrices + OF_GUARDS, k, m->size, at->x);
+    }
+    meet(m, at, m->guard_row + (ptrdiff_t)g->row * m->size, g->expression);
+    v->sticks = g->impact < 0;
+    v->upward = g->upward;
+}
+
+/* Friction that comes to stick: S+ = S- - b (g_x S- + g_p)/(g_x b), with the direction b of its force, which is what
+ * the fields differ by on either side.  No small deceleration divides: rate and q are those of b.  0: it does not */
+static int projects(const pl_guards *m, instant *at)
+{
+    pl_variation *v = at->v;
+    const int n = m->size;
+    const real *row = m->row + (ptrdiff_t)v->function * n;
+    real *q = column_of_time(m, v), rate;
+    const int stride = stride_of(m, v->function), up = at->c->region + stride, down = at->c->region - stride;
+    const int held = is_hold(m, v->function, interval_in(m, at->c->region, v->function));
+    int i, p;
+    if (!held || (v->before != up && v->before != down) || m->matrix[up] < 0 || m->matrix[down] < 0) {
+        return 0;
+    }
+    pl_multiply(n, n, matrix_of(m->A, m, m->matrix[up]), at->x, q);
+    pl_multiply(n, n, matrix_of(m->A, m, m->matrix[down]), at->x, v->work);
+    for (i = 0; i < n; i++) {
+        q[i] -= v->work[i];
+    }
+    rate = dot(n, row, q);
+    if (!(magnitude(rate) > noise_of(sizes(n, row, q)))) {
+        return 0;
+    }
+    for (p = 0; p < v->columns; p++) {
+        const real dg = v->upward ? v->dg[p] : -v->dg[p];
+        pl_saltation_pass(n, q, pl_saltation_time(dg, rate), v->S + (ptrdiff_t)p * n);
+    }
+    return 1;
+}
+
+#endif
+
+/* ---- numbers of regions ---- */
+
 static PL_APART int stride_of(const pl_guards *m, int expression)
 {
     int stride = 1, i;
@@ -102,6 +208,7 @@ static int can_be(const pl_guards *m, const instant *at)
 
 static void keep(const pl_guards *m, instant *at)
 {
+    VARIED(vary_set(m, at, m->hold[at->c->region]);)
     assign(m, m->hold[at->c->region], at->x, at->work);
 }
 
@@ -231,11 +338,13 @@ static real least_speed(const pl_guards *m, const instant *at, real least)
 
 static void jump(const pl_guards *m, instant *at, int k)
 {
+    VARIED(vary_set(m, at, m->impact[k].jump);)
     assign(m, m->impact[k].jump, at->x, at->work);
 }
 
 static void stop(const pl_guards *m, instant *at, int k)
 {
+    VARIED(vary_set(m, at, m->impact[k].still);)
     assign(m, m->impact[k].still, at->x, at->work);
 }
 
@@ -245,6 +354,7 @@ static void put_on(const pl_guards *m, instant *at, int k)
     real noise;
     const real e = off_guard(m, at, k, &noise);
     int i;
+    VARIED(vary_place(m, at, &m->impact[k], back);)
     for (i = 0; i < m->size; i++) {
         take_from(m->size, i, back[i] * e, at->x);
     }

@@ -47,6 +47,9 @@
 #ifndef PL_CONVERTED
 #define PL_CONVERTED 0
 #endif
+#ifndef PL_SCALED
+#define PL_SCALED 0
+#endif
 #ifndef PL_SEEDED
 #define PL_SEEDED 0
 #endif
@@ -92,6 +95,9 @@
 #ifndef PL_JUMPS
 #define PL_JUMPS 0
 #endif
+#ifndef PL_COLUMNS_D
+#define PL_COLUMNS_D 0
+#endif
 #ifndef PL_COMPENSATED
 #define PL_COMPENSATED 0
 #endif
@@ -127,6 +133,9 @@
 #endif
 #ifndef PL_NORMAL
 #define PL_NORMAL 0
+#endif
+#ifndef PL_OUT_SIZE
+#define PL_OUT_SIZE 0
 #endif
 #ifndef PL_OVER
 #define PL_OVER 0

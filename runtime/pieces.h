@@ -31,6 +31,7 @@ static event move(const searched *m, instant *at, const climb *up, real dt, cons
         at->c->status |= PL_TOO_MANY_EVENTS;
         first = no_event;
     }
+    VARIED(vary_piece(m, at, first.s * dt);)
     if (y && !first.any) {
         keep_piece(n, up, y, at->x, x_low);
     } else {
@@ -57,7 +58,9 @@ static int go(const searched *m, instant *at, real tau, int fresh)
             take_piece(n, &up, &m->ladder, m->Phi, at->c->matrix, at->x, y, x_low);
             hold(m, at, y, work);
             if (is_event_free(m, at, &up, y, bend, work)) {
+                VARIED(vary_piece(m, at, dt);)
                 keep_piece(n, &up, y, at->x, x_low);
+                VARIED(vary_held(m, at);)
                 left -= dt;
                 fresh = 0;
                 rise(&up);
@@ -75,6 +78,7 @@ static int go(const searched *m, instant *at, real tau, int fresh)
             continue;
         }
         first = move(m, at, &up, dt, whole ? y : (real *)0, &splits, x_low, work);
+        VARIED(vary_held(m, at);)
         hold(m, at, at->x, work);
         up.bent = 0;
         if (splits < 0 || is_lost(&up, n, at->x)) {
@@ -92,5 +96,6 @@ static int go(const searched *m, instant *at, real tau, int fresh)
         }
         splits = how == SEARCH_NO_MORE ? -1 : splits;
     }
+    VARIED(end_event(m, at);)
     return clear;
 }

@@ -15,6 +15,8 @@
  *     guards.c       such steps with dry friction and impacts, whose events differ from region to region
  *     crossings_compensated.c, guards_compensated.c
  *                    such steps of a double-double state: --accuracy compensated
+ *     crossings_d.c, guards_d.c
+ *                    such steps with derivatives: sensitivity
  *     retune.c       coefficients of a step from other params: NAME_retune
  *     event_split.c  event-split steps: schemes with a nonlinear remainder, from event to event
  *     rate.c         the frequency of a load from other params; its phase stays continuous
@@ -352,6 +354,13 @@ enum {
     PL_SINGULAR_MASS = 128
 };
 
+/* NAME_d has a status of its own: 0 or a sum of these bits, until it is set anew. */
+enum {
+    PL_D_GRAZING = 1,   /* A guard was met, or all but met, so flatly that behind it no derivative is known. */
+    PL_D_ONE_SIDED = 2, /* Events at one instant: their order, which a param may turn, decides on the derivative. */
+    PL_D_UNDECIDED = 4  /* PL_UNDECIDED: the derivative is that of what was taken. */
+};
+
 /* NAME_retune returns 0, PL_NOT_FINITE or one of these; unless it returns 0 the coefficients are unchanged. */
 enum {
     PL_SINGULAR = 4, /* The mass matrix is singular, or a divisor is 0. */
@@ -373,6 +382,7 @@ enum { PL_PEAK_SPACE = 6 };
 #define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 5 * (size) + 5 * (switches))
 #define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
 #define PL_SERIES_SWITCHING_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+#define PL_VARIATION_WORK(size, degree) (((degree) + 4) * (size))
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
 #define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
 #define PL_INCREMENT_WORK(size) (6 * (size) * (size))

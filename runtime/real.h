@@ -53,6 +53,20 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #define pl_guards_change pl_guards_compensated_change
 #endif
 
+/* With derivatives beside the state, in either type */
+#ifdef WITH_DERIVATIVES
+#undef pl_switching_start
+#undef pl_switching_advance
+#undef pl_guards_start
+#undef pl_guards_advance
+#undef pl_guards_change
+#define pl_switching_start pl_switching_start_d
+#define pl_switching_advance pl_switching_advance_d
+#define pl_guards_start pl_guards_start_d
+#define pl_guards_advance pl_guards_advance_d
+#define pl_guards_change pl_guards_change_d
+#endif
+
 /* row . x, of n entries.  Four sums, so that an addition need not wait for the one before it: as fast as several rows
  * at a time, in one order for all.  Inline: of many rows a call for each costs a fifth of the time. */
 static inline real dot_product(int n, const real *row, const real *x)

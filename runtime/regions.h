@@ -1,9 +1,20 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* regions.h: regions as intervals of switching functions between breakpoints, and a state in one of them, for the
  * runtime's own use: part of crossings.c and guards.c, which say first what `searched` is, their tables, and
- * AMPLITUDE(m, i), the size of what is never above 1 in switching function i.  It has no guard, for it is a part of
+ * AMPLITUDE(m, i), the size of what is never above 1 in switching function i.  With derivatives beside x, VARIED has
+ * what is done to them: it is empty without.  It has no guard, for it is a part of
  * these. */
 #include "compensated.h"
+
+#ifdef WITH_DERIVATIVES
+#define VARIED(hook) hook
+#define AND_VARIATION , pl_variation *variation
+#define SET_VARIATION(at) (at).v = variation
+#else
+#define VARIED(hook)
+#define AND_VARIATION
+#define SET_VARIATION(at) ((void)0)
+#endif
 
 typedef struct instant {
     real *x;
@@ -14,6 +25,7 @@ typedef struct instant {
     real time;             /* after the start of the step [s] */
     int before;            /* the region before what happens now */
     pl_chain chain;
+    VARIED(pl_variation *v;) /* NULL: no derivatives are asked for */
 } instant;
 
 static const real *matrix_of(const real *all, const searched *m, int matrix)
@@ -25,6 +37,10 @@ static const real *matrix_now(const searched *m, const instant *at)
 {
     return matrix_of(m->A, m, at->c->matrix);
 }
+
+#ifdef WITH_DERIVATIVES
+#include "variational.h"
+#endif
 
 /* One switch after the other, and where a region has it:
  *     for (w = first_switch(at); arrive(switches, breaks, region, &w); leave(&w)) */

@@ -87,7 +87,7 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
     for (i = 0; i < PL_IMPACTS; i++) {
         from = PL(take)(from, 1, 1, value, &c->impact[i].restitution);
         from = PL(take)(from, 1, PL_SIZE, value, c->speed[i]);
-        from = PL(take)(from, 1, PL_SIZE, value, c->back[i]);
+        from = PL(take)(from, 1, PL_SIZE, value, c->retreat[i]);
     }
 #if PL_FRICTION_FORCES > 0
     from = PL(take)(from, PL_FRICTION_FORCES, PL_SIZE, value, c->friction_forces[0][0]);

@@ -23,7 +23,9 @@
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
  * PL_EVENT_FREE, PL_CAPPED       whether most steps are seen to be clear before it is asked: of guards by unmet.h, with
  *                                bit i where x_i is never above 1
- *     PL_FEW                     crossings by few.h, which is included then; 0: none */
+ *     PL_FEW                     crossings by few.h, which is included then; 0: none
+ *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of
+ *                                pl_variation, and PL(varied_first), PL(varied) its tables */
 #include "numbers.h"
 
 /* ---- what the search goes by ---- */
@@ -56,7 +58,7 @@
 #define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_OF(guard_amplitude)
 #define PL_ENDED PL_OF(tangent)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GUARD_TABLES, PL_AMPLITUDES
 #define PL_SET PL(sets), PL(held), PL_OF(value)[0]
-#define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(back)[PL_FIRST(PL_IMPACTS)]
+#define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(retreat)[PL_FIRST(PL_IMPACTS)]
 #define PL_BOUNDS PL_ENDED, PL_SET, PL_IMPACTS, PL_OF(impact) + PL_FIRST(PL_IMPACTS), PL_SPEEDS
 #elif PL_SWITCHING_FUNCTIONS > 0
 #define PL_BOUNDS PL_OF(tangent)[0][0], PL_OF(chord_error)[0][0], PL_OF(cubic_error)[0][0]
@@ -78,6 +80,16 @@ static PL_SEARCH PL(switching)(const PL_TYPE *s, int segment)
 }
 #else
 static const PL_SEARCH PL(switching) = {PL_TABLES};
+#endif
+
+#if PL_COLUMNS_D > 0
+#define PL_AND_VARIATION , pl_variation *v
+#define PL_V , v
+#define PL_NO_V , (pl_variation *)0
+#else
+#define PL_AND_VARIATION
+#define PL_V
+#define PL_NO_V
 #endif
 
 /* ---- regions ---- */
@@ -140,7 +152,8 @@ static int PL(counted)(const pl_contact *contact, real done, int count, pl_cross
 
 /* x on by tau, from change to change of the loads.  Of what sticks and bounces a change at the end, too, is decided at
  * once: outputs read it. */
-static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
+                            pl_crossing *crossing PL_AND_VARIATION)
 {
     const real never = PL_GUARDS ? 2 * PL_H : tau;
     real done = 0, work[PL_WORK];
@@ -151,7 +164,12 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         const real to = change < tau ? change : tau;
         PL_SEARCH here = PL(switching)(s, segment);
         here.max_events -= count;
-        PL_ADVANCE(&here, to - done, x, contact, crossing + count, work);
+#if PL_COLUMNS_D > 0
+        if (v != NULL) {
+            v->segment = segment;
+        }
+#endif
+        PL_ADVANCE(&here, to - done, x, contact, crossing + count, work PL_V);
         count = PL(counted)(contact, done, count, crossing);
         if (!(PL_GUARDS ? change <= tau : change < tau)) {
             break;
@@ -159,11 +177,17 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         if (to > done) {
             done = to;
         }
+#if PL_COLUMNS_D > 0
+        if (v != NULL) {
+            pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_SIZE * PL_SIZE, x);
+            v->segment = segment + 1;
+        }
+#endif
         PL(next_segment)(s, x, contact, work);
 #if PL_GUARDS
         here = PL(switching)(s, segment + 1);
         here.max_events -= count;
-        PL_CHANGE(&here, done, x, contact, crossing + count, work);
+        PL_CHANGE(&here, done, x, contact, crossing + count, work PL_V);
         count += contact->crossings;
 #endif
     }
@@ -173,21 +197,22 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #else
 
 /* x on by tau */
-static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing)
+static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
+                            pl_crossing *crossing PL_AND_VARIATION)
 {
     real work[PL_WORK];
 #if PL_OWN
     const PL_SEARCH here = PL(switching)(s, 0);
-    PL_ADVANCE(&here, tau, x, contact, crossing, work);
+    PL_ADVANCE(&here, tau, x, contact, crossing, work PL_V);
 #else
     (void)s;
-#if PL_EVENT_FREE && PL_GUARDS
+#if PL_EVENT_FREE && PL_GUARDS && !(PL_COLUMNS_D > 0)
     if (PL_SOFT) {
         pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
         return;
     }
 #endif
-    PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work);
+    PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work PL_V);
 #endif
 }
 
@@ -213,7 +238,7 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
         x[i] = s->y[PL_PLACE(i)];
     }
 #endif
-    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART);
+    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
 #if PL_COMPENSATED
@@ -333,6 +358,55 @@ static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
             from[i] = x[i];
         }
         PL(by_search)(s, again);
+    }
+}
+#endif
+
+#if PL_COLUMNS_D > 0
+/* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is; s stays. */
+static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact,
+                     real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+{
+    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+    real scale[PL_SIZE], when[PL_COLUMNS_D], dg[PL_COLUMNS_D], noise[PL_SIZE];
+    real work[PL_VARIATION_WORK(PL_SIZE, PL_DEGREE_D)];
+    pl_variation v;
+    int i, p;
+    v.columns = PL_COLUMNS_D;
+    v.matrices = PL_MATRICES_D;
+    v.degree = PL_DEGREE_D;
+    v.first = PL(varied_first);
+    v.entry = PL(varied);
+    v.segment = v.pending = v.sticks = v.upward = 0;
+    v.function = -1;
+    v.status = 0;
+    v.S = S[0];
+    v.scale = scale;
+    v.when = when;
+    v.dg = dg;
+    v.noise = noise;
+    v.work = work;
+    for (i = 0; i < PL_SIZE; i++) {
+        scale[i] = i < PL_STATES ? ds->scale[PL_PLACE(i)] : 0;
+        S[PL_COLUMNS_D][i] = 0;
+    }
+    for (p = 0; p < PL_COLUMNS_D; p++) {
+        for (i = 0; i < PL_STATES; i++) {
+            S[p][i] = ds->s[p][PL_PLACE(i)];
+        }
+    }
+    PL(search_step)(s, tau, x, &contact, crossing, &v);
+    for (i = 0; i < PL_STATES; i++) {
+        ds->scale[PL_PLACE(i)] = scale[i];
+    }
+    for (p = 0; p < PL_COLUMNS_D; p++) {
+        for (i = 0; i < PL_STATES; i++) {
+            ds->s[p][PL_PLACE(i)] = S[p][i];
+        }
+    }
+    ds->status |= v.status;
+    if (contact.status & PL_UNDECIDED) {
+        ds->status |= PL_D_UNDECIDED;
     }
 }
 #endif

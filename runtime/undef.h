@@ -64,6 +64,8 @@
 #undef PL_DEGREE
 #undef PL_DERIVATIVES
 #undef PL_DIRECT
+#undef PL_OUT_SIZE
+#undef PL_SCALED
 #undef PL_SEEDED
 #undef PL_BY_PHI
 #undef PL_TAKES
@@ -97,6 +99,13 @@
 #undef PL_GUARD_ERRORS
 #undef PL_GUARD_ROWS
 #undef PL_GUARD_TABLES
+#undef PL_AND_VARIATION
+#undef PL_COLUMNS_D
+#undef PL_D
+#undef PL_DEGREE_D
+#undef PL_MATRICES_D
+#undef PL_NO_V
+#undef PL_V
 #undef PL_GIVEN
 #undef PL_TAKEN
 #undef PL_TAKEN_ROWS

@@ -33,19 +33,23 @@ static void define_override(struct building *b, const struct definition *d)
 		symbol->broken = true;
 }
 
-static void set_tunables(struct building *b)
+static void set_value(struct symbol *symbol, struct place at, mpq_srcptr value)
 {
-	if (b->request->again.tunable)
+	symbol->value = NEW(struct node);
+	*symbol->value = (struct node){ .kind = NODE_NUMBER, .at = at, .start = at, .end = at };
+	mpq_init(symbol->value->number);
+	mpq_set(symbol->value->number, value);
+}
+
+static void set_values(struct building *b)
+{
+	const struct again *again = &b->request->again;
+	if (again->varied)
+		set_value(spec_find(b->spec, again->varied), b->spec->name_at, again->value);
+	if (again->tunable)
 		derive_params(b->spec);
-	for (int i = 0; b->request->again.tunable && i < b->spec->tunables; i++) {
-		const struct tunable *tunable = &b->spec->tunable[i];
-		struct node *value = NEW(struct node);
-		*value = (struct node){ .kind = NODE_NUMBER, .at = tunable->at, .start = tunable->at,
-					.end = tunable->at };
-		mpq_init(value->number);
-		mpq_set(value->number, b->request->again.tunable[i]);
-		tunable->symbol->value = value;
-	}
+	for (int i = 0; again->tunable && i < b->spec->tunables; i++)
+		set_value(b->spec->tunable[i].symbol, b->spec->tunable[i].at, again->tunable[i]);
 }
 
 /* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
@@ -542,7 +546,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	begin_model(&b);
 	for (int i = 0; i < request->definitions.count; i++)
 		define_override(&b, &request->definitions.definition[i]);
-	set_tunables(&b);
+	set_values(&b);
 	statement_guard(take_derivatives, &b);
 	if (!request->again.relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
@@ -562,7 +566,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	if (!diagnostics_errors() && request->explained && spec->energies)
 		silent_guard(find_symmetries, &b);
 	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
-		    request->again.undivided || request->again.derivatives > 0;
+		    request->again.undivided || request->again.derivatives > 0 || request->again.varied;
 	if (!diagnostics_errors() && (!reported || request->again.derivatives > 0))
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !reported && warnings_are_heard())

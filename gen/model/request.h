@@ -21,6 +21,9 @@ struct again {                      /* to build a model a second time, for build
 	bool undivided;             /* regions are those of all coordinates together */
 	/* so many of the spec's derivatives, from the first on, as coordinates behind its own; 0: none */
 	int derivatives_from, derivatives;
+	/* this param has that value, to see how the equations follow it; NULL: none has */
+	const char *varied;
+	mpq_srcptr value;
 	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
 };
 #define EQUILIBRIA "all equilibria"

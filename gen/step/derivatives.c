@@ -2,6 +2,7 @@
 /* Derivatives of a step: the spec joined by its derivative is a model of its own, of which the steps of the derivatives
  * are taken. What it does not couple leaves no trace there, and each of its numbers is rounded once. */
 #include "step.h"
+#include "step/regions/variation.h"
 #include "model/reads.h"
 #include "model/series/remainder.h"
 #include "model/tunable/tuning.h"
@@ -101,6 +102,11 @@ static void derive(void *context)
 				    .apart = goes_apart(step) };
 	for (int i = 0; i < d->columns; i++)
 		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
+	if (step->model->switching) {
+		step->derivatives = d;
+		d->varied = varied_models(step);
+		return;
+	}
 	const int together = columns_together(step);
 	for (int first = 0; first < d->columns; first += together) {
 		const int left = d->columns - first, count = left < together ? left : together;

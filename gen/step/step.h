@@ -21,6 +21,7 @@ struct event_split;
 struct expansion;
 struct forced;
 struct modal;
+struct varied_model;
 struct normal;
 struct denormal_flush;
 struct derivatives;
@@ -134,6 +135,7 @@ struct derivatives {
 	bool apart;                 /* each block goes the way of its own step, beside the model */
 	int blocks;
 	struct derivative_block *block;
+	struct varied_model *varied; /* per column, of a piecewise-linear model, which has no blocks; else NULL */
 };
 /* step->derivatives, where the spec or the request asks for some; false: it was said why there are none */
 bool find_derivatives(struct step *step);

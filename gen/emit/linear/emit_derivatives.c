@@ -5,8 +5,10 @@
 #include "emit/declarations.h"
 #include "emit/state.h"
 #include "emit/steps.h"
+#include "emit/regions/regions.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
+#include "step/regions/variation.h"
 #include "step/linear/forms.h"
 
 #include <string.h>
@@ -92,6 +94,8 @@ void emit_derivative_declarations(const struct emitter *e)
 		    column_count(d->block[b].columns));
 	if (d->apart)
 		say(e, "    double left[$N_STATES], time;  /* of s, when both were stepped last */\n");
+	if (d->varied)
+		say(e, "    double scale[$N_STATES];    /* the largest size of each state so far */\n");
 	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
 	       "};\n");
 	announce(e, spell(e, "void   $n_init_d($n *s, $n_d *ds);"),
@@ -369,9 +373,12 @@ static void emit_step_of_all(const struct emitter *e)
 		return;
 	}
 	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
-	emit_state_now(e);
+	if (!d->varied)
+		emit_state_now(e);
 	for (int b = 0; b < d->blocks; b++)
 		say(e, "    $n_step_d%d(s, y, ds%s);\n", b, input_arguments(e));
+	if (d->varied)
+		say(e, "    $n_vary_all(s, ds%s, $N_H);\n", input_arguments(e));
 	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
 	emit_keep_seeds(e);
 	close_function(e, "");
@@ -381,6 +388,13 @@ static void emit_at_of_all(const struct emitter *e)
 {
 	open_function(e, NULL, "void $n_at_d(const $n *s, const $n_d *ds%s, double tau, double S[$N_D][$N_STATES])",
 		      input_parameters(e));
+	if (e->step->derivatives->varied) {
+		say(e, "    $n_d then = *ds;\n"
+		       "    $n_vary_all(s, &then%s, tau);\n"
+		       "    $n_get_d(s, &then, S);\n", input_arguments(e));
+		close_function(e, "");
+		return;
+	}
 	const bool apart = e->step->derivatives->apart;
 	if (!apart)
 		emit_state_now(e);
@@ -396,6 +410,8 @@ static void emit_at_of_all(const struct emitter *e)
 static void emit_outputs_of_all(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
+	if (e->model->declared_outputs && d->varied)
+		return;
 	open_function(e, NULL, "void $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])");
 	if (e->model->declared_outputs && d->apart) {
 		for (int b = 0; b < d->blocks; b++)
@@ -418,6 +434,8 @@ static void emit_start(const struct emitter *e)
 	const struct derivatives *d = e->step->derivatives;
 	const int states = e->system->states, size[] = { d->columns, states };
 	double *value = ARRAY(double, (size_t)(d->columns * states));
+	for (int p = 0; p < d->columns && d->varied; p++)
+		vary_start(e->step, p, value + p * states);
 	for (int b = 0; b < d->blocks; b++)
 		for (int i = 0; i < d->block[b].step->model->system.states; i++) {
 			int state, column = column_of(e->step->model->written, &d->block[b], i, &state);
@@ -484,17 +502,22 @@ void emit_step_derivatives(const struct emitter *e)
 	}
 	for (int b = 0; b < d->blocks && !d->apart && has_values_between(e); b++)
 		emit_block_at(e, &d->block[b], b);
+	if (d->varied)
+		emit_all_varied(e);
 	emit_step_of_all(e);
 	if (has_values_between(e))
 		emit_at_of_all(e);
 	emit_outputs_of_all(e);
 	emit_start(e);
+	const int row = d->varied && e->model->declared_outputs ? emit_varied_outputs(e) : 0;
 	emit_name_list(e, "d_names", d->columns, name);
 	emit_values_of_columns(e);
 	emit_inputs_of_columns(e);
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "BY_PHI", is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi });
+		   { "BY_PHI", is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi },
+		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
+		   { "SEGMENTS", row ? e->model->system.segments : 1 });
 	say_include(e, "derivatives.h");
 }

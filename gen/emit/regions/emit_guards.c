@@ -137,7 +137,7 @@ static void emit_impacts(const struct emitter *e, const struct guards *g)
 		say(e, "    { 0, 0, 0, -1, -1, -1, 0.0, 0.0 }\n");
 	close_table(e);
 	put_matrix(e, "speed", "Approach speed of each impact: speed . x", count, size, speed, note);
-	put_matrix(e, "back",
+	put_matrix(e, "retreat",
 		     "Correction of the state for a penetration of 1, times the depth",
 		     count, size, back, note);
 }

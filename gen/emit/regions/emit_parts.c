@@ -56,7 +56,7 @@ static int switched_parts(const struct emitter *e)
 	return parts - is_linear_step(e->step->regions.part[parts - 1]);
 }
 
-static void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part))
+void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part))
 {
 	for (int p = 0; p < count; p++) {
 		const struct emitter part = part_of(e, p);
@@ -121,6 +121,7 @@ static void emit_linear_tables(const struct emitter *part)
 	emit_ladder_places(part, NULL);
 	emit_spacing(part);
 	emit_ladder(part, &pieces, NULL);
+	emit_variation(part, NULL);
 	emit_search(part, ladder_text(part, NULL));
 	say_include(part, "search.h");
 }
@@ -283,13 +284,17 @@ static void emit_linear_rows(const struct emitter *part, const double *full)
 }
 
 /* That of a step that leaves no trace; of the linear part, which has none: in a segment of time */
+const char *start_of_search(const struct emitter *part)
+{
+	return !is_linear_part(part)  ? spell(part, "s->contact$p")
+	       : regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0, 0}")
+				      : "{0, 0, 0, 0, 0, 0}";
+}
+
 static void declare_contact(const struct emitter *part)
 {
-	const char *contact = !is_linear_part(part)  ? spell(part, "s->contact$p")
-			      : regions_change(part) ? spell(part, "{0, 0, s->segment, $o_matrix[s->segment], 0, 0}")
-						     : "{0, 0, 0, 0, 0, 0}";
 	say(part, "    pl_contact contact = %s;\n"
-		  "    pl_crossing crossing[%d];\n", contact, is_linear_part(part) ? 1 : MAX_EVENTS);
+		  "    pl_crossing crossing[%d];\n", start_of_search(part), is_linear_part(part) ? 1 : MAX_EVENTS);
 }
 
 /* By the pieces of the search, which has nothing to look for */
@@ -299,7 +304,7 @@ static void emit_linear_by_pieces(const struct emitter *part)
 	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
-	say(part, "    $o_search_step(s, $N_H, x, &contact, crossing);\n");
+	say(part, "    $o_search_step(s, $N_H, x, &contact, crossing%s);\n", no_variation(part));
 	emit_state_of_x(part);
 }
 
@@ -368,7 +373,7 @@ static void emit_at_of_part(const struct emitter *part)
 	declare_contact(part);
 	declare_region_vector(part);
 	emit_region_vector(part, true);
-	say(part, "    $o_search_step(s, tau, x, &contact, crossing);\n");
+	say(part, "    $o_search_step(s, tau, x, &contact, crossing%s);\n", no_variation(part));
 	say(part, "    for (i = 0; i < %d; i++) { y[$o_state[i]] = x[i]; }\n", part->system->states);
 	close_function(part, "");
 }

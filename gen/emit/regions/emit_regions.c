@@ -188,6 +188,7 @@ void emit_regions(const struct emitter *e)
 	} else if (e->step->regions.event_check.is_made && !g && is_checked_by_tables(e->step)) {
 		emit_spans(e);
 	}
+	emit_variation(e, g);
 	emit_search(e, ladder_text(e, g));
 	if (e->step->regions.event_check.fast_path)
 		emit_crossing_macros(e, &pieces);
@@ -308,6 +309,7 @@ void emit_search(const struct emitter *e, const char *ladder)
 {
 	const char *search =
 		format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", is_compensated(e) ? "_compensated" : "");
+	const char *varied = has_variation(e) ? "_d" : "";
 	begin_macros(e, "search.h", e->own);
 	emit_search_sizes(e);
 	say_macro(e, "STATES", own_states(e));
@@ -319,11 +321,12 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "PART", e->place);
 	say_macro(e, "LADDER", ladder);
 	say_macro(e, "SEARCH", has_guards(e) ? "pl_guards" : "pl_switching");
-	say_macro(e, "START", format("%s_start", search));
-	say_macro(e, "ADVANCE", format("%s_advance", search));
+	say_macro(e, "START", format("%s_start%s", search, varied));
+	say_macro(e, "ADVANCE", format("%s_advance%s", search, varied));
+	emit_variation_macros(e);
 	if (!regions_change(e))
 		return;
-	say_macro(e, "CHANGE", format("%s_change", search));
+	say_macro(e, "CHANGE", format("%s_change%s", search, varied));
 	say_macro(e, "UNTIL(s, k)", spell(e, "$n_until(s, k)"));
 }
 
@@ -514,7 +517,7 @@ void emit_region_at(const struct emitter *e)
 		emit_at_start(e);
 	emit_load_states(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	say(e, "    $o_search_step(s, tau, x, &contact, crossing);\n");
+	say(e, "    $o_search_step(s, tau, x, &contact, crossing%s);\n", no_variation(e));
 	emit_hand_over(e);
 	close_function(e, "");
 }

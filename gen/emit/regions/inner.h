@@ -49,6 +49,18 @@ const char *size_of_x(const struct emitter *e, const struct pieces *p, const cha
 void emit_spans(const struct emitter *e); /* region by region: intervals of switching functions */
 void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, const char *const *function);
 
+bool has_variation(const struct emitter *e);                      /* the step has derivatives beside it */
+void emit_variation(const struct emitter *e, const struct guards *guards); /* tables of how tables vary */
+struct variation;
+void put_entries(const struct emitter *e, const char *name, const struct variation *v);
+void emit_variation_macros(const struct emitter *e);
+const char *no_variation(const struct emitter *e);                /* a last argument of the search; or nothing */
+
+/* ---- emit_parts.c: the parts, each as it would be alone ---- */
+
+void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part));
+const char *start_of_search(const struct emitter *part);          /* the region where it begins */
+
 /* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */
 
 void emit_friction_forces(const struct emitter *e);               /* what friction carries, for outputs */

@@ -4,6 +4,7 @@
 #include "emit/steps.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
+#include "step/regions/variation.h"
 
 int functions_of(const struct emitter *e)
 {
@@ -380,4 +381,49 @@ const char **listed_twice(int count, const char *const *text)
 bool regions_change(const struct emitter *e)
 {
 	return e->model->switching->segments > 1;
+}
+
+/* ---- how tables vary with what derivatives are by ---- */
+
+bool has_variation(const struct emitter *e)
+{
+	return e->step->shown->derivatives && e->step->shown->derivatives->varied;
+}
+
+void put_entries(const struct emitter *e, const char *name, const struct variation *v)
+{
+	open_table(e, "pl_varied", name, format("[%d]", v->entries ? v->entries : 1),
+		   "Derivatives of the tables above, where they are not 0: row, column");
+	for (int i = 0; i < v->entries; i++)
+		say(e, "    { %d, %d, %s },\n", v->entry[i].row, v->entry[i].column, shortest(v->entry[i].value));
+	if (!v->entries)
+		say(e, "    { 0, 0, 0.0 }\n");
+	close_table(e);
+}
+
+void emit_variation(const struct emitter *e, const struct guards *g)
+{
+	if (!has_variation(e))
+		return;
+	const int part = e->part ? (int)(e->part - e->step->shown->model->switching->part) : -1;
+	const struct variation v = variation_of(e->step, part, g);
+	put_wholes(e, false, "varied_first", "Where the derivatives of each table begin, column by column: A of each "
+		   "linear system, switching functions, breakpoints, guards, assignments, times of changes",
+		   v.blocks + 1, v.first);
+	put_entries(e, "varied", &v);
+}
+
+void emit_variation_macros(const struct emitter *e)
+{
+	if (!has_variation(e))
+		return;
+	say_macro(e, "COLUMNS_D", integer_text(e->step->shown->derivatives->columns));
+	say_macro(e, "D", spell(e, "$n_d"));
+	say_macro(e, "MATRICES_D", integer_text(e->step->branches));
+	say_macro(e, "DEGREE_D", integer_text(e->step->series.degree + 3));
+}
+
+const char *no_variation(const struct emitter *e)
+{
+	return has_variation(e) ? ", (pl_variation *)0" : "";
 }

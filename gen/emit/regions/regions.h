@@ -25,5 +25,9 @@ void emit_part_members(const struct emitter *e);
 void emit_part_start(const struct emitter *e);
 void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
+/* NAME_vary_all(s, ds, [u, du,] tau): the derivatives go on by tau, from s */
+void emit_all_varied(const struct emitter *e);
+/* What derivatives.h asks for those of outputs, rows over an x of so many entries */
+int emit_varied_outputs(const struct emitter *e);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "math/math.h"
 #include "model/model.h"
+#include "tuning.h"
 
 struct retuned_row;
 
@@ -36,10 +37,12 @@ struct elsewhere {
 struct listing {                    /* retuned_rows.c: the numbers of one model, in columns of x */
 	const struct model *model;
 	const struct layout *x;
+	int segments;               /* that outputs have, of time */
 	int rows;
 	struct retuned_row *row;
 	mpq_t *entry;               /* rows x columns */
 };
+struct listing list_rows(const struct model *model, const struct layout *x, int segments);
 /* An output, whose loads have so many segments of time, in one of these, or as x in all */
 void row_of_output(const struct layout *x, const struct linear *system, const struct output *output, int segments,
 		   int segment, mpq_t *row);

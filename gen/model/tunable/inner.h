@@ -16,7 +16,6 @@ mpq_srcptr entry_seen(const struct elsewhere *s, int place, ptrdiff_t index);
 bool entry_stays(const struct elsewhere *s, ptrdiff_t index);
 /* into the equations, as it was recorded; what is 0 is left out */
 void add_tuned_entry(struct elsewhere *s, ptrdiff_t index, struct tuned_equations *all, int row, int column);
-struct listing list_rows(const struct model *model, const struct layout *x);
 
 /* ---- derived.c: what is computed from tunable params as if it were one ---- */
 

@@ -98,7 +98,7 @@ static const struct difference of_regions[] = {
 static mpq_t *read_rows(struct elsewhere *s, const struct model *model)
 {
 	struct tuning *t = s->tuning;
-	struct listing l = list_rows(model, &t->x);
+	struct listing l = list_rows(model, &t->x, model->system.segments);
 	if (s->places == 0) {
 		t->rows = l.rows;
 		t->row = l.row;

@@ -43,7 +43,7 @@ static void list_output(struct listing *l, enum retuned_kind kind, int of, int i
 			int segment)
 {
 	mpq_t *entry = add_row(l, kind, of, index);
-	row_of_output(l->x, &l->model->system, row, l->model->system.segments, segment, entry);
+	row_of_output(l->x, &l->model->system, row, l->segments, segment, entry);
 }
 
 static void list_system(struct listing *l, int index)
@@ -142,10 +142,10 @@ static void list_regions(struct listing *l)
 	list_signs(l);
 }
 
-struct listing list_rows(const struct model *model, const struct layout *x)
+struct listing list_rows(const struct model *model, const struct layout *x, int segments)
 {
 	const int systems = model->switching ? model->switching->systems : 1;
-	struct listing l = { .model = model, .x = x };
+	struct listing l = { .model = model, .x = x, .segments = segments };
 	for (int k = 0; k < systems; k++)
 		list_system(&l, k);
 	(model->switching ? list_regions : list_linear)(&l);

@@ -63,6 +63,7 @@ static void guard_interval(const struct step *step, const struct pieces *pieces,
 				       .breakpoint = breakpoint,
 				       .upward = upward,
 				       .leads = upward ? e->stride : -e->stride,
+				       .release = -1,
 				       .limit = upward || at == 0 ? at : -at,
 				       .impact = impact_at(s, segment, function, e->at[breakpoint], upward) };
 		if (guard.impact < 0 && impact_resting(s, segment, function, interval + (upward ? 1 : -1)) >= 0)
@@ -90,7 +91,8 @@ static void guard_releases(const struct step *step, struct guards *g, int region
 					  .breakpoint = interval - !release->upward,
 					  .upward = release->upward,
 					  .leads = release->upward ? stride : -stride,
-					  .impact = -1 });
+					  .impact = -1,
+					  .release = k });
 	}
 }
 

@@ -16,6 +16,7 @@ struct guard {                      /* row . x must not become greater than the 
 	int leads;                  /* to the region of this number, less that where it stands */
 	double limit;
 	int impact;                 /* that begins there; -1: none */
+	int release;                /* of its region; -1: it is a switching function that is met */
 };
 struct impact_row {                 /* an impact */
 	int function, breakpoint;

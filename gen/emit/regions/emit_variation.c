@@ -1,0 +1,177 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Derivatives beside a step of regions: the columns of what acts on the states, and those of outputs. */
+#include "inner.h"
+#include "emit/steps.h"
+#include "model/tunable/elsewhere.h"
+#include "step/regions/variation.h"
+
+/* ---- what acts on the states ---- */
+
+/* z = t^k e^{a t} (cos, sin)(w t + p): z_w = t J z, z_p = J z, z_a = t z */
+static void emit_varied_load(const struct emitter *e, int column, int load, int from)
+{
+	const struct varied_model *v = &e->step->shown->derivatives->varied[column];
+	const struct forcing *more = v->more->system.load[load].forcing, *less = v->less->system.load[load].forcing;
+	const double a = varied_number(v, more->a, less->a), w = varied_number(v, more->w, less->w),
+		     p = varied_number(v, more->p, less->p);
+	for (int k = 0; k < e->system->load[load].columns && (a != 0 || w != 0 || p != 0); k++) {
+		struct summands sum = { 0 };
+		const bool turns = mpq_sgn(e->system->load[load].forcing->w) != 0;
+		const double sign = k % 2 ? 1 : -1;
+		const char *other = format("x[%d]", from + k + (k % 2 ? -1 : 1));
+		if (a != 0)
+			add_summand(&sum, scaled(a, format("t * x[%d]", from + k)));
+		if (turns && w != 0)
+			add_summand(&sum, scaled(sign * w, format("t * %s", other)));
+		if (turns && p != 0)
+			add_summand(&sum, scaled(sign * p, other));
+		say(e, "    S[%d][%d] = %s;\n", column, from + k, sum_of(&sum, 16));
+	}
+}
+
+static void emit_varied_input(const struct emitter *e, int column)
+{
+	const struct sensitivity *by = &e->step->shown->derivatives->column[column];
+	for (int i = 0; i < e->system->inputs && by->symbol->kind == SYMBOL_INPUT; i++) {
+		const int of = place_of_input(e, i), at = e->step->layout.input[i];
+		const char *now = format("(du == NULL ? 0.0 : du[%d])", of);
+		if (of != by->symbol->index)
+			continue;
+		say(e, "    S[%d][%d] = %s;\n", column, at, e->system->input[i].hold ? format("ds->du[%d]", of) : now);
+		if (e->system->input[i].hold)
+			say(e, "    S[%d][%d] = %s;\n", column, at + 1,
+			    slope_of_samples(e, now, format("ds->du[%d]", of)));
+	}
+}
+
+static const char *samples_text(const struct emitter *e, const char *type, const char *size)
+{
+	const char *u = given_inputs(e) ? spell(e, format(", %su%s", type, size)) : "";
+	return e->step->shown->derivatives->seeded ? spell(e, format("%s, %sdu%s", u, type, size)) : u;
+}
+
+static const char *sample_parameters(const struct emitter *e)
+{
+	return samples_text(e, "const double ", "[$N_INPUTS]");
+}
+
+static const char *sample_arguments(const struct emitter *e)
+{
+	return samples_text(e, "", "");
+}
+
+/* ds over tau, from s */
+static void emit_varied_step(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		needed[l] = layout->load[l] >= 0;
+	open_function(e, NULL, "static void $o_vary_by(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
+	say(e, "    pl_contact contact = %s;\n"
+	       "    const double t = $n_time(s);\n"
+	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
+	declare_region_vector(e);
+	emit_load_states(e, needed, true);
+	emit_region_vector(e, true);
+	for (int p = 0; p < e->step->shown->derivatives->columns; p++) {
+		for (int l = 0; l < e->system->loads; l++)
+			if (needed[l])
+				emit_varied_load(e, p, l, layout->load[l]);
+		emit_varied_input(e, p);
+	}
+	say(e, "    $o_vary(s, tau, x, contact, S, ds);\n");
+	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
+}
+
+static void emit_vary_call(const struct emitter *part)
+{
+	say(part, "    $o_vary_by(s, ds%s, tau);\n", sample_arguments(part));
+}
+
+static void each_part(const struct emitter *e, void (*emit)(const struct emitter *part))
+{
+	if (e->step->regions.parts)
+		for_parts(e, e->step->regions.parts, emit);
+	else
+		emit(e);
+}
+
+void emit_all_varied(const struct emitter *e)
+{
+	each_part(e, emit_varied_step);
+	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
+	each_part(e, emit_vary_call);
+	close_function(e, "");
+}
+
+/* ---- outputs ---- */
+
+static struct layout layout_of_outputs(const struct emitter *e)
+{
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	for (int l = 0; l < e->system->loads; l++)
+		needed[l] = outputs_read(e, l);
+	return layout_with(e->system, 0, needed);
+}
+
+static void emit_output_rows(const struct emitter *e, const struct layout *x)
+{
+	const struct model *model = e->model;
+	const int segments = model->system.segments, size[] = { segments, model->outputs, x->size };
+	double *value = ARRAY(double, (size_t)(segments * model->outputs * x->size)), *to = value;
+	const char **name = ARRAY(const char *, (size_t)model->outputs);
+	for (int k = 0; k < segments; k++)
+		for (int o = 0; o < model->outputs; o++, to += x->size) {
+			RATIONALS *row = rationals((size_t)x->size);
+			row_of_output(x, &model->system, &model->output[o], segments, k, row);
+			name[o] = model->output[o].name;
+			for (int j = 0; j < x->size; j++)
+				to[j] = finite_number(e, row[j]);
+		}
+	emit_array(e, "Outputs as rows over states, loads and inputs, in each segment of time", "out_row", 3, size,
+		   value, name);
+}
+
+/* x and what it varies by, now */
+static void emit_columns_now(const struct emitter *e, const struct layout *x)
+{
+	const struct derivatives *d = e->step->derivatives;
+	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	open_function(e, NULL, "static void $n_columns(const $n *s, const $n_d *ds, double x[%d], double S[$N_D][%d])",
+		      x->size, x->size);
+	say(e, "    const double t = $n_time(s);\n");
+	for (int l = 0; l < e->system->loads; l++)
+		needed[l] = x->load[l] >= 0;
+	emit_load_states(e, needed, true);
+	say(e, "    $n_get(s, x);\n");
+	for (int l = 0; l < e->system->loads; l++)
+		for (int k = 0; k < e->system->load[l].columns && needed[l]; k++) {
+			const char *operand = load_operand(e, l, k);
+			say(e, "    x[%d] = %s;\n", x->load[l] + k, operand ? operand : "1.0");
+		}
+	for (int i = 0; i < e->system->inputs; i++)
+		for (int k = 0; k <= e->system->input[i].hold; k++)
+			say(e, "    x[%d] = s->%s[%d];\n", x->input[i] + k, k ? "slope" : "u", place_of_input(e, i));
+	for (int p = 0; p < d->columns; p++) {
+		for (int l = 0; l < e->system->loads; l++)
+			if (needed[l])
+				emit_varied_load(e, p, l, x->load[l]);
+		for (int i = 0; i < e->system->inputs && d->column[p].symbol->kind == SYMBOL_INPUT; i++)
+			for (int k = 0; k <= e->system->input[i].hold && i == d->column[p].symbol->index; k++)
+				say(e, "    S[%d][%d] = ds->%s[%d];\n", p, x->input[i] + k, k ? "slope" : "du", i);
+	}
+	close_function(e, "t ds S");
+}
+
+int emit_varied_outputs(const struct emitter *e)
+{
+	const struct layout x = layout_of_outputs(e);
+	const struct variation v = variation_of_outputs(e->step, &x);
+	emit_output_rows(e, &x);
+	put_wholes(e, false, "out_first", "Where the derivatives of rows begin, of each column in each segment of time",
+		   v.blocks + 1, v.first);
+	put_entries(e, "out_varied", &v);
+	emit_columns_now(e, &x);
+	return x.size;
+}
