@@ -16,7 +16,7 @@ map=
 # shellcheck disable=SC2086
 twice "$build" "$work/few" --quick structural $map errors_scs
 result $? 'tables and errors without times: the same bytes twice'
-for name in first/frame.csv first/integrators.csv ${map:+first/plmap.csv} first/variants/scs.errors \
+for name in first/frame.csv first/integrators.csv ${map:+first/plmap_raw.csv} first/variants/scs.errors \
 	second/variants/scs.errors; do
 	[ -s "$work/few/$name" ] || echo "no $name"
 done >log
