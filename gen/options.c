@@ -142,6 +142,14 @@ static void take_fmu_version(struct options *options, const char *value)
 	options->fmu_version = is_second("--fmu-version", value, "2", "3") ? 3 : 2;
 }
 
+static void take_external(struct options *options, const char *value)
+{
+	if (strcmp(value, "casadi") != 0)
+		wrong_usage(format("--external takes casadi, found '%s'", value));
+	options->request.external = true;
+	note_in_banner(options, "--external casadi");
+}
+
 static void take_fmu_binary(struct options *options, const char *value)
 {
 	options->fmu_binary = true;
@@ -279,6 +287,8 @@ static const struct row {
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
 	{ "sensitivity", "k,c,x", "also emit derivatives by params, initial values, inputs: NAME_step_d",
 	  .text = AT(request.sensitivity) },
+	{ "external", "casadi", "also emit NAME_casadi: one step with its Jacobian, as an external function of CasADi",
+	  .take = take_external },
 	{ "fast", NULL, "with tables for long runs: NAME_run by blocks of rows, and --refresh",
 	  .flag = AT(request.fast) },
 	{ "refresh", "N", "cos, sin, exp of loads every N steps, rotated between by a table; 1: every step (default)",
@@ -492,6 +502,10 @@ void read_options(int argc, char **argv, struct options *options)
 	take_all(argc, argv, options);
 	take_page(options);
 	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
+	if (options->request.external && (options->request.sensitivity || options->request.single || options->fmu))
+		wrong_usage(format("--external casadi has derivatives by states and inputs, in doubles: without %s",
+				   options->request.sensitivity ? "--sensitivity" : options->fmu ? "--fmu"
+								: "--real float"));
 	options->request.explained = options->print == PRINT_EXPLAIN || options->print == PRINT_JSON;
 	note_all(options);
 	find_together(options);

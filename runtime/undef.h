@@ -68,6 +68,8 @@
 #undef PL_SCALED
 #undef PL_SEEDED
 #undef PL_BY_PHI
+#undef PL_ARGUMENTS
+#undef PL_JAC
 #undef PL_TAKES
 #undef PL_GIVES
 #undef PL_ALONG

@@ -30,6 +30,7 @@ struct again {                      /* to build a model a second time, for build
 struct request {                    /* what the user asks for on the command line; of most, a spec may say it too */
 	const char *step, *scheme, *prefix, *tolerance;
 	const char *modes;
+	bool external;              /* also a step as an external function, by derivatives of states and inputs */
 	const char *sensitivity;    /* by what derivatives are, in place of the statement's; NULL: it says so */
 	/* which tunable params regions have as numbers, not as inputs; stands on what builds a model. NULL: none */
 	const bool *(*find_factors)(struct building *b);

@@ -22,10 +22,26 @@ static const char *scheme_of_derivatives(const struct step *step)
 	return model->request.scheme_at.source ? model->request.scheme : scheme_name(model->scheme);
 }
 
+/* Of an external function: by every state, then along every input */
+static const char *external_columns(const struct model *model)
+{
+	const struct linear *system = &model->written->system;
+	const char *list = model->written->names.state[0];
+	for (int i = 1; i < system->states; i++)
+		list = format("%s,%s", list, model->written->names.state[i]);
+	for (struct symbol *s = model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && !s->delayed)
+			list = format("%s,%s", list, s->name);
+	return list;
+}
+
 /* What of the request concerns how a step is made faster, or reports it, does not hold for the derivatives. */
 static struct request request_of_derivatives(const struct step *step, int first, int count)
 {
 	struct request request = step->model->request;
+	request.external = false;
+	if (step->model->request.external)
+		request.sensitivity = external_columns(step->model);
 	request.again = (struct again){ .derivatives_from = first, .derivatives = count };
 	request.scheme = scheme_of_derivatives(step);
 	if (goes_apart(step))
@@ -117,8 +133,23 @@ static void derive(void *context)
 	step->derivatives = d;
 }
 
+static void take_external(void *context)
+{
+	const struct model *model = context;
+	for (struct symbol *s = model->spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_INPUT && s->hold > 0)
+			error(s->at, NULL, "--external casadi takes held inputs, and '%s' is a ramp", s->name);
+	if (model->spec->sensitivities > 0)
+		say_note(model->spec->sensitivity[0].at, "--external casadi has derivatives by states and inputs");
+	if (!parse_sensitivities(model->spec, source_argument(external_columns(model))))
+		abandon();
+}
+
 bool find_derivatives(struct step *step)
 {
+	if (step->model->request.external &&
+	    !statement_guard(take_external, (void *)(uintptr_t)step->model))
+		return false;
 	return step->model->spec->sensitivities == 0 || statement_guard(derive, step);
 }
 

@@ -350,4 +350,126 @@ for name in tuned tuned_series; do
 		$run_cc -I"$root/runtime" tuned.c r.c "$archive" -lm -o r >>log 2>&1 && ./r >>log
 	result $? "$name: at the values that it was given"
 done
+
+# ---- as an external function of CasADi: what its user's guide says, and differences of the function itself ----
+
+cat >external.c <<'END'
+#include "plrt.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#define JOIN(a, b) a##b
+#define F(x) M(_casadi##x)
+#define JF(x) J(_casadi##x)
+typedef long long int casadi_int;
+extern const pl_model M(_model);
+int F()(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+casadi_int F(_n_in)(void), F(_n_out)(void), JF(_n_in)(void), JF(_n_out)(void);
+const casadi_int *F(_sparsity_in)(casadi_int), *F(_sparsity_out)(casadi_int);
+const casadi_int *JF(_sparsity_in)(casadi_int), *JF(_sparsity_out)(casadi_int);
+const char *F(_name_in)(casadi_int);
+int F(_work)(casadi_int *, casadi_int *, casadi_int *, casadi_int *);
+int JF(_work)(casadi_int *, casadi_int *, casadi_int *, casadi_int *);
+int JF()(const double **arg, double **res, casadi_int *iw, double *w, int mem);
+
+/* entries: all of a dense one, none of an empty one, else -1 */
+static int entries(const casadi_int *s)
+{
+	return s[2] == 1 ? (int)(s[0] * s[1]) : s[2] == 0 && s[1] == 1 && s[3] == 0 ? 0 : -1;
+}
+
+int main(void)
+{
+	const pl_model *m = &M(_model);
+	const int ins = (int)F(_n_in)(), outs = (int)F(_n_out)(), rows[2] = { m->states, m->outputs };
+	const double *arg[8];
+	double *value[3], *res[16] = { NULL }, *up[2], *down[2], worst = 0;
+	casadi_int size[4], jac[4];
+	int bad = ins != 2 + (m->inputs > 0) || outs != 2 || JF(_n_in)() != ins + outs || JF(_n_out)() != ins * outs;
+	F(_work)(&size[0], &size[1], &size[2], &size[3]);
+	JF(_work)(&jac[0], &jac[1], &jac[2], &jac[3]);
+	bad = bad || size[0] < ins || size[1] < outs || jac[0] < ins + outs || jac[1] < ins * outs;
+	for (int i = 0; i < ins; i++) {
+		const int n = F(_name_in)(i)[0] == 'x' ? m->states : F(_name_in)(i)[0] == 'u' ? m->inputs : 1;
+		bad = bad || entries(F(_sparsity_in)(i)) != n || entries(JF(_sparsity_in)(i)) != n;
+		value[i] = calloc((size_t)n, sizeof(double));
+		for (int k = 0; k < n; k++) value[i][k] = 0.3 - 0.07 * k + 0.11 * i;
+		arg[i] = value[i];
+	}
+	for (int o = 0; o < outs; o++) {
+		bad = bad || entries(F(_sparsity_out)(o)) != rows[o] || entries(JF(_sparsity_in)(ins + o)) != 0;
+		arg[ins + o] = NULL;
+		up[o] = calloc((size_t)rows[o], sizeof(double));
+		down[o] = calloc((size_t)rows[o], sizeof(double));
+	}
+	for (int b = 0; b < ins * outs; b++) {
+		const casadi_int *s = JF(_sparsity_out)(b), *of = F(_sparsity_in)(b % ins);
+		bad = bad || s[0] != rows[b / ins] || s[1] != of[0] || entries(s) < 0;
+		res[b] = calloc((size_t)(s[0] * s[1]), sizeof(double));
+	}
+	/* the step is that of the model */
+	void *s = calloc(1, m->size);
+	m->init(s);
+	m->set(s, value[ins - 1][0], value[0]);
+	m->step(s, m->inputs ? value[1] : NULL);
+	m->get(s, down[0]);
+	m->out(s, down[1]);
+	bad = bad || F()(arg, up, NULL, NULL, 0);
+	for (int o = 0; o < outs; o++)
+		for (int r = 0; r < rows[o]; r++) bad = bad || up[o][r] != down[o][r];
+	bad = bad || JF()(arg, res, NULL, NULL, 0);
+	for (int i = 0; i < ins - 1; i++)       /* by t there is none */
+		for (int k = 0; k < F(_sparsity_in)(i)[0]; k++) {
+			const double at = value[i][k], h = 1e-5;
+			value[i][k] = at + h;
+			F()(arg, up, NULL, NULL, 0);
+			value[i][k] = at - h;
+			F()(arg, down, NULL, NULL, 0);
+			value[i][k] = at;
+			for (int o = 0; o < outs; o++)
+				for (int r = 0; r < rows[o]; r++) {
+					const double d = (up[o][r] - down[o][r]) / (2 * h);
+					const double J = res[o * ins + i][k * rows[o] + r];
+					worst = fmax(worst, fabs(d - J) / (1 + fabs(J)));
+				}
+		}
+	printf("Jacobian: differences are off by %g; signatures %s\n", worst, bad ? "or the step are wrong" : "agree");
+	return bad || !(worst < 1e-8);
+}
+END
+cat >cart.spec <<'END'
+model cart
+coord x, z
+input u, v
+2*x'' + 0.5*x' + 50*(x - z) = 3*cos(4*t) + u
+z' + 50*z = v + x'
+output x, acc = x'', q = 50*x + 2*u
+step 0.01
+END
+cat >swing.spec <<'END'
+model swing
+param m = 2
+coord phi, x
+init phi = 1
+x'' + m*sin(phi) = 0.1*cos(t)
+phi'' + 9.81*sin(phi) + 0.2*x' = 0
+step 0.01
+END
+sed -e s/swing/driven/ -e 's/^coord.*/&\ninput u/' -e 's/= 0$/= u/' swing.spec >driven.spec
+for name in cart swing driven; do
+	"$PLGEN" --external casadi "$name.spec" -o "$name.c" 2>log
+	$run_cc -I"$root/runtime" "-DM(x)=$name##x" "-DJ(x)=jac_$name##x" external.c "$name.c" "$archive" -lm -o q \
+		>>log 2>&1 && ./q >>log
+	result $? "external casadi: $name"
+done
+ramped() {
+	: >log
+	sed 's/u, v/u, v hold first/' cart.spec >ramps.spec
+	! "$PLGEN" --external casadi ramps.spec >out 2>said && [ ! -s out ] &&
+		grep -q "ramps.spec:3:7: error: --external casadi takes held inputs, and 'u' is a ramp" said &&
+		! "$PLGEN" --external casadi --real float cart.spec >out 2>said &&
+		grep -q 'in doubles: without --real' said
+	result $? 'external casadi: ramps and float are refused'
+}
+ramped
 tap_end

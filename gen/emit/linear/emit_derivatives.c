@@ -520,4 +520,10 @@ void emit_step_derivatives(const struct emitter *e)
 		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
 		   { "SEGMENTS", row ? e->model->system.segments : 1 });
 	say_include(e, "derivatives.h");
+	if (!e->model->request.external)
+		return;
+	emit_sizes(e, "external.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns });
+	say(e, "#define PL_JAC(name) jac_$n_casadi##name\n"
+	       "#include \"external.h\"\n");
 }
