@@ -554,13 +554,11 @@ static bool print_many(struct work *w, void (*print)(void *))
 /* What looks at a model without what is around it */
 static bool goes_with_delays(const struct work *w)
 {
-	const struct options *o = &w->options;
-	const char *what = o->fmu ? "--fmu" : o->amplitude ? "--amplitude" : NULL;
 	const struct facts facts = facts_of_model(w->model);
 	const char *against = objection_to(CAN_VIEWS, &facts, w->model).why;
-	if (!what || !against)
+	if (!w->options.amplitude || !against)
 		return true;
-	say_error(w->model->delays->delay->symbol->at, NULL, "%s %s", what, against);
+	say_error(w->model->delays->delay->symbol->at, NULL, "%s%s", words_before(CAN_VIEWS), against);
 	return false;
 }
 

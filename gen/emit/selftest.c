@@ -52,16 +52,10 @@ static void emit_tables(const struct emitter *e, const struct reference *r)
 		emit_crossings(e, r);
 }
 
-/* That a step is given: samples of delayed inputs are kept */
-static int inputs_of_step(const struct emitter *e)
-{
-	return e->model->delays ? e->model->delays->inputs : given_inputs(e);
-}
-
 static void emit_sample(const struct emitter *e)
 {
 	open_function(e, NULL, "static void $n_known_sample(double ramp, double u[$N_INPUTS])");
-	for (int i = 0; i < inputs_of_step(e); i++)
+	for (int i = 0; i < outer_inputs(e->model); i++)
 		say(e, "    u[%d] = %s;\n", i, e->system->input[i].hold ? "ramp" : "1.0");
 	close_function(e, e->ramps ? "" : "ramp");
 }
@@ -86,10 +80,10 @@ void emit_selftest(const struct emitter *e, bool jumps)
 {
 	const struct reference r = e->step->replayed ? *e->step->replayed : reference_of(e->step->shown);
 	emit_tables(e, &r);
-	if (inputs_of_step(e))
+	if (outer_inputs(e->model))
 		emit_sample(e);
 	emit_begin(e);
-	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", inputs_of_step(e) }, { "ROWS", r.rows },
+	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", outer_inputs(e->model) }, { "ROWS", r.rows },
 		   { "CROSSED", r.crossings },
 		   { "JUMPS", jumps }, { "AT", e->step->series.emitted });
 	if (r.crossings)

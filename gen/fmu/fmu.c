@@ -8,7 +8,7 @@
 
 const char *fmu_header_name(const struct model *model)
 {
-	return format("%s_pl.h", model->name);
+	return format("%s_pl.h", outer_name(model));
 }
 
 /* An input that is read further ahead than to the end of a step: the importer has no such samples. */
@@ -79,7 +79,7 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
 		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
-		      step->model->spec->count.inputs, step->model->outputs,
+		      outer_inputs(step->model), step->model->outputs,
 		      tunables_of(step->model) ? tunables_of(step->model)->given : 0, f->variables.constants,
 		      constants_text(&f->variables));
 }
@@ -97,9 +97,9 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 		return NULL;
 	f->version = version;
 	f->single = model->request.single;
-	f->name = model->name;
+	f->name = outer_name(model);
 	f->title = model->spec->name;
-	f->h = nearest_double(model->h);
+	f->h = nearest_double(outer_step(model));
 	f->math = strstr(code, "\n#include <math.h>\n") != NULL;
 	f->crosses = strstr(header, format("\nuint64_t %s_crossed(", f->name)) != NULL;
 	f->variables = variables_of(step);

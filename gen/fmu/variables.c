@@ -89,12 +89,12 @@ struct fmu_variables variables_of(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	const struct tuning *tuning = tunables_of(model);
 	const int params = tuning ? tuning->given : 0;
-	const int all = 1 + model->spec->count.inputs + model->outputs + params + system->states +
+	const int all = 1 + outer_inputs(model) + model->outputs + params + system->states +
 			model->spec->count.params;
 	struct fmu_variables v = { 0, 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
 	v.variable[0].unit = model->spec->units ? unit_parse((struct place){ NULL, 1 }, "s", 1) : NULL;
-	for (int i = 0; i < model->spec->count.inputs; i++) {
+	for (int i = 0; i < outer_inputs(model); i++) {
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
 		set_unit(&v.variable[v.count - 1],
 			 symbol_named(model->spec, system->input[i].name, SYMBOL_INPUT)->unit);

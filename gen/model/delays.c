@@ -141,3 +141,18 @@ void find_delays(struct building *b)
 	else if (next_delayed(b->spec->first) && !diagnostics_errors())
 		statement_guard(build_delays, b);
 }
+
+const char *outer_name(const struct model *model)
+{
+	return model->delays ? model->delays->name : model->name;
+}
+
+int outer_inputs(const struct model *model)
+{
+	return model->delays ? model->delays->inputs : model->spec->count.inputs;
+}
+
+mpq_srcptr outer_step(const struct model *model)
+{
+	return model->delays ? model->delays->h : model->h;
+}

@@ -87,4 +87,10 @@ void argument_value(struct model *model, const char *text, mpq_ptr value); /* of
 
 struct model *stepped_model(struct model *model, struct spec *spec, const struct request *request); /* NULL: said why */
 
+/* ---- delays.c: what users see of a model, which with delayed inputs is around it ---- */
+
+const char *outer_name(const struct model *model);
+int outer_inputs(const struct model *model);
+mpq_srcptr outer_step(const struct model *model);            /* [s] */
+
 #endif

@@ -137,8 +137,7 @@ static bool link_here(TCCState *tcc)
 
 struct native native_of(struct place at, const struct step *step, enum running_with with)
 {
-	const struct model *model = step->model;
-	const char *name = model->delays ? model->delays->name : model->name, *message = "no memory that can run";
+	const char *name = outer_name(step->model), *message = "no memory that can run";
 	char *text = text_of(step, with);
 	TCCState *tcc = need_memory(tcc_new());
 	struct native native = { 0 };

@@ -9,9 +9,8 @@
 static struct sampled samples_of_test(const struct step *step, long count)
 {
 	const struct linear *system = &step->model->system;
-	const struct delays *delays = step->model->delays;      /* whose core has parts of a step */
 	const int inputs = system->inputs;
-	struct sampled d = { .inputs = inputs, .h = mpq_get_d(delays ? delays->h : step->model->h), .samples = count };
+	struct sampled d = { .inputs = inputs, .h = mpq_get_d(outer_step(step->model)), .samples = count };
 	d.ramps = ARRAY(bool, (size_t)inputs + 1);
 	d.sample = ARRAY(double, (size_t)(inputs * (count + 2)) + 1);
 	for (int i = 0; i < inputs; i++) {
