@@ -58,6 +58,11 @@ static struct program *modal_program(const struct step *step)
 	struct program *program = NEW(struct program);
 	const int terms = driven_terms(modal);
 	*program = *step->program;
+	program->assignment = ARRAY(struct assignment, program->assignments);
+	for (int i = 0; i < program->assignments; i++) {
+		program->assignment[i] = step->program->assignment[i];
+		program->assignment[i].carried = false; /* of states: modes only add up what drives them */
+	}
 	program->loops = true;
 	program->products_added = false;
 	program->groups = 0;
