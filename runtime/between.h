@@ -216,7 +216,7 @@ static inline int PL(go_on)(PL(piece) *p, real size)
 }
 
 /* The next part: 0, or what went wrong */
-static inline int PL(advance)(PL(piece) *p, int *inaccurate)
+static inline int PL(go_through)(PL(piece) *p, int *inaccurate)
 {
     const int begun = PL(expand_piece)(p);
     int wrong;
@@ -261,6 +261,30 @@ static inline int PL(advance)(PL(piece) *p, int *inaccurate)
     }
 #endif
     return 0;
+}
+
+/* The same.  Events move states too: what is not finite behind one is not kept. */
+static inline int PL(advance)(PL(piece) *p, int *inaccurate)
+{
+#if PL_CONTACTS
+    real y[PL_STATES], low[PL_STATES];
+    int i, wrong;
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] = p->y[i];
+        low[i] = p->low[i];
+    }
+    wrong = PL(go_through)(p, inaccurate);
+    if (!pl_not_finite(p->y, PL_STATES)) {
+        return wrong;
+    }
+    for (i = 0; i < PL_STATES; i++) {
+        p->y[i] = y[i];
+        p->low[i] = low[i];
+    }
+    return PL_LOST;
+#else
+    return PL(go_through)(p, inaccurate);
+#endif
 }
 
 /* y and what rounding took from it, `end` h later: 0; or what went wrong, and y as far as it went.  fresh: nothing is

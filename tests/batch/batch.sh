@@ -266,6 +266,9 @@ done
 by_itself models/two_masses.spec 'where it crosses a breakpoint is a matter of its own'
 by_itself models/impact_oscillator.spec 'where it crosses a breakpoint is a matter of its own'
 by_itself models/pendulum.spec 'the remainder is not linear in the state'
+sed -n '/^=== cart_stops$/,/^---$/{/^[=-]/!p;}' "$root/tests/mechanisms/mechanisms.cases" >cart_stops.spec
+specs=$work by_itself cart_stops.spec 'the remainder is not linear in the state'
+by_itself models/slider_crank.spec 'the remainder is not linear in the state'
 by_itself models/vanderpol_stiff.spec 'the remainder is not linear in the state'
 by_itself tests/tunable/changes.spec 'loads change their formula inside a step'
 by_itself tests/tunable/sweep.spec 'its loads may have a frequency of its own'
