@@ -27,7 +27,7 @@ class Engine {
     this.rows = at(3, this.most * this.columns);
     this.params.set(model.params.map((p) => p.value));
     this.nominal = Float64Array.from(this.params);
-    this.signals = model.inputs.map(() => ({kind: "hold", level: 0, size: 1, rate: 1, record: null}));
+    this.signals = model.inputs.map(() => ({kind: "step", level: 0, size: 1, rate: 1, record: null}));
     this.ahead = Math.max(0, ...model.ahead);
     wasm.init();
     this.start = Float64Array.from(this.y);         // The initial values that a reset takes.
@@ -187,6 +187,7 @@ class Page {
     this.history = new History(engine.columns);
     this.running = false;
     this.owed = 0;
+    this.held = -1;
     this.channels = this.findChannels();
     const few = this.channels.slice(0, 3).map((c) => c.name);
     this.set = {speed: this.usualSpeed(), window: 0, show: few, x: few[0], y: this.channels[Math.min(1,
@@ -234,7 +235,7 @@ class Page {
     const section = (title, ...parts) => element("section", {}, element("h2", {textContent: title}), ...parts);
     document.body.append(
       element("header", {}, element("h1", {textContent: m.title}),
-        element("p", {textContent: m.states.length + " states, step " + text(m.h) + " s; the same numbers as plrun"})),
+        element("p", {textContent: m.states.length + " states, step " + text(m.h) + " s; as plrun --math own"})),
       element("main", {}, this.buttons(), this.said, this.wrong,
         element("div", {className: "panes"},
           section("Sketch", this.sketch), section("Scope", this.scope, this.read, this.choices()),
@@ -261,11 +262,10 @@ class Page {
     };
     this.speedText = element("output", {});
     this.windowText = element("output", {});
+    const actions = [["Step", "single"], ["Reset", "forget"], ["Link", "link"], ["CSV", "save"], ["Sound", "sound"]];
     return element("div", {className: "bar"}, this.play,
-      this.button("Step", () => this.single()), this.button("Reset", () => this.forget()),
-      this.button("Link", () => this.link()), this.button("CSV", () => this.save()),
-      this.button("Sound", () => this.sound()),
-      labelled("Speed", this.speed, this.speedText), labelled("Time shown", this.window, this.windowText), this.now);
+      ...actions.map(([name, action]) => this.button(name, () => this[action]())), labelled("Speed", this.speed,
+      this.speedText), labelled("Time shown", this.window, this.windowText), this.now);
   }
 
   change(name, value) {
@@ -650,7 +650,8 @@ class Page {
   drawLane(g, c, start, top, lane, colour) {
     const h = this.history, wide = this.scope.wide, column = c.column;
     h.measure(column, start);
-    const low = h.low, high = h.high, room = (high - low || Math.abs(high) || 1) * 0.55, middle = (high + low) / 2;
+    const low = h.low, high = h.high, middle = (high + low) / 2;
+    const room = (Math.max(high - low, 1e-6 * Math.abs(high)) || 1) * 0.55;
     const scale = (lane - 18) / 2 / room, centre = top + lane / 2 + 6;
     g.strokeStyle = colour;
     g.beginPath();
@@ -963,16 +964,17 @@ class Page {
       s.setPointerCapture(event.pointerId);
       this.resumes = this.running;
       this.run(false);
-      this.engine.start.set(this.history.value.subarray((this.history.count - 1) % this.history.room
-        * this.engine.columns + 1 + this.engine.outputs).subarray(0, this.engine.states));
+      for (let i = 0; i < this.engine.states; i++) this.engine.start[i] = this.value(1 + this.engine.outputs + i);
     };
     s.onpointermove = (event) => {
-      if (this.held === undefined || this.held < 0) return;
+      if (this.held < 0) return;
+      const largest = this.largest, box = this.box;
       this.drag(...at(event));
-      this.forgetKeepingScale();
+      this.forgetPast();
+      Object.assign(this, {largest, box});        // The scale stays while a body is held.
     };
     s.onpointerup = s.onpointercancel = () => {
-      if (this.held === undefined || this.held < 0) return;
+      if (this.held < 0) return;
       this.held = -1;
       this.run(this.resumes);
     };
@@ -1000,15 +1002,8 @@ class Page {
       if (file && this.model.inputs.length) file.text().then((t) => this.record(t));
     });
     window.addEventListener("beforeprint", () => this.printNumbers());
-    window.addEventListener("resize", () => { this.touch(); });
+    window.addEventListener("resize", () => this.touch());
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { this.colours(); this.wake(); });
-  }
-
-  forgetKeepingScale() {
-    const largest = this.largest, box = this.box;
-    this.forgetPast();
-    this.largest = largest;
-    this.box = box;
   }
 
   /* On paper the numbers stand where the controls are on the screen. */

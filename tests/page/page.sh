@@ -27,7 +27,8 @@ equal() {
 	[ -z "$tuned" ] || echo "tunable $(echo "$tuned" | sed 's/=[^ ]*//g; s/ /, /g')" >>"$name.spec"
 	sed "$5" "$name.spec" >moved.spec
 	# shellcheck disable=SC2046
-	"$plrun" --math own $([ -z "$tuned" ] || printf -- '-D %s ' $tuned) moved.spec "$end" >plrun.csv 2>log ||
+	"$plrun" --math own $([ -z "$tuned" ] || printf -- '-D %s ' $tuned) ${record:+--input "$record"} moved.spec \
+		"$end" >plrun.csv 2>log ||
 		{ result 1 "$name: plrun"; return; }
 	"$plgen" --page "$name.html" "$name.spec" 2>log || { result 1 "$name: a page"; return; }
 	node "$page" rows "$name.html" $(($(wc -l <plrun.csv) - 2)) "$settings" >page.csv 2>log ||
@@ -59,6 +60,11 @@ if [ -z "$missing" ] && merging; then
 	equal bouncing_ball 5 '{}' '' ''
 	equal crane 5 '{}' '' ''
 	equal duffing 20 '{}' '' ''
+	samples=$(awk 'BEGIN { for (k = 0; k < 300; k++) printf "%s%.6f", k ? " " : "", sin(k * k / 900) / 8 }')
+	echo "$samples" | tr ' ' '\n' | sed '1i ground_acc' >record.csv
+	record=$PWD/record.csv
+	equal oscillator 1.4 "{\"inputs\": {\"ground_acc\": {\"kind\": \"record\", \"record\": [$(echo "$samples" |
+		tr ' ' ',')]}}}" '' ''
 fi
 
 # Whatever names, comments and titles have in them is text.
@@ -155,6 +161,17 @@ if merging && [ -z "$missing" ] && [ -n "$browser" ]; then
 	seen 'sliders, initial values, a reset: the numbers of node and plrun' two_masses.html 'page.tune(0, 137.25),
 		page.tune(1, 0.03), page.place(1, 0.125), page.run(false), page.forgetPast(), page.advance(1000),
 		page.value(1) === '"$(sed -n 1002p page.two 2>/dev/null | cut -d, -f2)"
+	# shellcheck disable=SC2016
+	seen 'a rod that is dragged ends where the pointer is' double_pendulum.html '(() => {
+		page.run(false);
+		page.forgetPast();
+		page.draw(0);
+		const rod = page.model.draw[1].at, at = (k) => page.drawn(rod[k]);
+		page.held = page.grabbed(page.left + page.scale * at(2), page.base - page.scale * at(3));
+		page.drag(page.left + page.scale * 0.9, page.base + page.scale * 1.3);
+		page.forgetPast();
+		return page.held >= 0 && Math.hypot(at(2) - 0.9, at(3) + 1.3) < 0.01;
+	})()'
 	seen 'at 400 points nothing is wider than the window' two_masses.html \
 		'document.documentElement.scrollWidth <= innerWidth' 400
 elif merging; then
