@@ -484,6 +484,8 @@ static bool print_live_page(FILE *to, const struct step *step, const char *code,
 	return true;
 }
 
+enum { LARGE_PAGE = 110000 };   /* bytes: what nearly all models stay below */
+
 bool write_page(const struct options *options, const struct step *step, struct file *code)
 {
 	if (!options->page)
@@ -491,6 +493,9 @@ bool write_page(const struct options *options, const struct step *step, struct f
 	struct file *f = file_new(options->page);
 	const bool made = print_live_page(f->to, step, code->text, options->look.title);
 	file_close(f);
+	if (made && f->length > LARGE_PAGE)
+		say_note(step->model->spec->name_at, "the page has %zu kB, since the step has large tables",
+			 f->length / 1000);
 	file_drop(code);
 	return made;
 }

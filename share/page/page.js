@@ -594,6 +594,7 @@ class Page {
   }
 
   draw(now) {
+    this.fresh = !this.running || !(now - this.textAt < 200);   // Texts are made five times in a second.
     this.drawSketch(this.fit(this.sketch, 220));
     this.drawScope(this.fit(this.scope, 260));
     this.drawPlane(this.fit(this.plane, 240));
@@ -601,7 +602,7 @@ class Page {
       this.drawSpectrum(this.fit(this.spectrum, 240));
       this.spectrumAt = now;
     }
-    if (!this.running || !(now - this.textAt < 200)) {
+    if (this.fresh) {
       this.now.textContent = "t = " + this.engine.wasm.time().toFixed(3) + " s"
         + (this.history.events ? ", events: " + this.history.events : "");
       this.textAt = now;
@@ -678,7 +679,8 @@ class Page {
     g.fillText(c.label, 4, top + 12);
     g.fillStyle = this.ink;
     g.textAlign = "right";
-    if (high >= low) g.fillText(text(low / c.factor) + " … " + text(high / c.factor), wide - 4, top + 12);
+    if (this.fresh || !c.range) c.range = high >= low ? text(low / c.factor) + " … " + text(high / c.factor) : "";
+    g.fillText(c.range, wide - 4, top + 12);
     g.textAlign = "left";
   }
 
@@ -880,7 +882,7 @@ class Page {
 
   /* Links of one pair of bodies lie below each other; what is not next to each other is linked above. */
   drawElement(g, k, column, middle, size) {
-    const [what, from, to] = this.model.elements[k];
+    const one = this.model.elements[k], what = one[0], from = one[1], to = one[2];
     if (what === "mass") return;
     let lane = 0;
     for (let j = 0; j < k; j++) {

@@ -114,6 +114,20 @@ if [ -z "$missing" ]; then
 	result $? 'a model without outputs'
 fi
 
+cat >many.spec <<'END'
+model many
+coord q[256]
+q'' + 100*q = 0
+init q[1] = 1
+output q
+step 0.01
+END
+if merging && [ -z "$missing" ]; then
+	"$plgen" --page many.html many.spec 2>log && node "$page" rows many.html 3 '{}' >rows 2>>log &&
+		[ "$(wc -l <rows)" -eq 5 ] && sed -n 5p rows | grep -q '^0.03,0.95533648912560'
+	result $? '512 states'
+fi
+
 # wrong TEXT OPTION...: the command line, exit 2
 wrong() {
 	text=$1
