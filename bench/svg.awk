@@ -274,12 +274,13 @@ function define(id,    within) {
 		within = shape[id]; sub(/.*href='#/, "", within); sub(/'.*/, "", within)
 		within = define(within)
 	}
+	sub(/xlink:href/, "href", shape[id])
 	return within shape[id] "\n"
 }
 END {
 	end_of_segment()
 	print "<svg" said("width", wide) said("height", high) said("viewBox", view) \
-		" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">"
+		" xmlns=\"http://www.w3.org/2000/svg\">"
 	if (markers) {
 		printf "<style>marker { overflow: visible; fill: none }</style>\n<defs>\n"
 		for (m = 1; m <= markers; m++) {
@@ -289,7 +290,7 @@ END {
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
 			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" \
-				said("xlink:href", "#" part[1]) said("transform", "scale(" tenths(part[2]) ")") \
+				said("href", "#" part[1]) said("transform", "scale(" tenths(part[2]) ")") \
 				said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
