@@ -116,7 +116,6 @@ static void banner_form(const struct emitter *e)
 		[FORM_KICK_DRIFT_KICK] = "Kick, drift, kick: p += X q; q += S p; p += X q, "
 					 "S and X symmetric: symplectic whatever their rounding"
 	};
-	struct drift drift = drift_of(e->step);
 	if (kept[e->step->form])
 		say(e, " * %s%s.\n", kept[e->step->form], e->step->program->compensated
 		    ? "; factors are double-double,\n * and so is the state, whose low parts are in low" : "");
@@ -132,10 +131,7 @@ static void banner_form(const struct emitter *e)
 	if (e->step->carried.count)
 		say(e, " * No other state depends on %s: the rounding errors of %s are carried along.\n",
 		       carried_text(e), e->step->carried.count > 1 ? "each" : "it");
-	if (drift.known)
-		say(e, " * %s.\n", drift_text(&drift, e->model->h));
-	if (e->step->rounding.known)
-		say(e, " * %s.\n", rounding_text(e->step));
+	banner_words(e, text_rounding);
 	if (e->model->request.single)
 		say(e, " * Numbers and arithmetic are float; each constant is rounded to it once.\n");
 }
@@ -154,29 +150,13 @@ static void banner_board(const struct emitter *e)
 
 static void banner_cost(const struct emitter *e)
 {
-	const struct program *program = e->step->program;
 	const char *of = !e->step->collocation ? format("form %s", step_form_text(e->step))
 		       : e->step->taylor.expansion ? "a series, which may serve several steps"
 		       : "an iteration of Newton's method,\n * of which an internal step takes two to four";
-	say(e, "%s * One step of h = %s s, %s: %d multiplications, %d additions",
-	    e->prints->step_note ? e->prints->step_note : "", readable_text(e->model->h), of,
-	    program->multiplications, program->additions);
-	if (e->step->refresh)
-		say(e, ";\n * every %d steps, for the functions of the loads, %d and %d more",
-		    e->step->refresh->steps, program->forcing_multiplications, program->forcing_additions);
-	else if (program->forcing_multiplications)
-		say(e, ", %d of them and %d for the functions of the loads", program->forcing_multiplications,
-		    program->forcing_additions);
-	if (program->calls)
-		say(e, ", %d calls of the model's own functions", program->calls);
-	say(e, ".\n");
+	say(e, "%s * One step of h = %s s, %s: %s.\n", e->prints->step_note ? e->prints->step_note : "",
+	    readable_text(e->model->h), of, operations_text(e->step));
 	banner_board(e);
-	if (peaks_by_values(e->step))
-		banner_sentence(e, "Peaks are looked for by values inside a step where the last three ends do not "
-				   "show that none is passed.");
-	else if (has_peaks(e))
-		say(e, " * The look for peaks takes %d and %d more, the outputs counted, where a bound shows that none "
-		       "passes its peak.\n", program->peak_multiplications, program->peak_additions);
+	banner_words(e, text_peaks);
 	if (e->step->refresh && e->step->refresh->terms)
 		say(e, " * What loads add in the steps between comes from a table of %d bytes, each number correctly "
 		       "rounded.\n", 8 * refresh_numbers(e->step));

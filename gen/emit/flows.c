@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the C of a step has by its flow and events, functions and words. */
-#include "declarations.h"
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"
 #include "steps.h"

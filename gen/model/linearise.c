@@ -8,7 +8,6 @@
  * alone stays a load; what else depends on time is taken at t, 0 unless another time was asked for. */
 #define _GNU_SOURCE
 #include "capability.h"
-#include "state_mass.h"
 #include "checks.h"
 #include "linearise.h"
 #include "reads.h"

@@ -5,6 +5,7 @@
 #include "step/collocation/collocation.h"
 #include "step/exponential/normal.h"
 #include "step/linear/forms.h"
+#include "step/linear/rows.h"
 #include "step/series/expansion.h"
 #include "step/series/switching.h"
 
@@ -157,4 +158,37 @@ void text_scheme(FILE *to, const struct step *step)
 		text_of_event_split(to, step);
 	if (step->is.flow == FLOW_SERIES || step->is.flow == FLOW_COLLOCATION)
 		fputs("The state is double-double: its low parts, which hold the rounding errors, are in low.\n", to);
+}
+
+const char *operations_text(const struct step *step)
+{
+	const struct program *p = step->program;
+	const char *text = format("%d multiplications, %d additions", p->multiplications, p->additions);
+	if (step->refresh)
+		text = format("%s; every %d steps, for the functions of the loads, %d and %d more", text,
+			      step->refresh->steps, p->forcing_multiplications, p->forcing_additions);
+	else if (p->forcing_multiplications)
+		text = format("%s (%d and %d of them for the functions of the loads)", text,
+			      p->forcing_multiplications, p->forcing_additions);
+	return p->calls ? format("%s, %d calls of the model's own functions", text, p->calls) : text;
+}
+
+void text_peaks(FILE *to, const struct step *step)
+{
+	if (peaks_by_values(step))
+		fputs("Peaks are looked for by values inside a step where the last three ends do not show that none is "
+		      "passed.\n", to);
+	else if (peak_outputs(step->model) > 0)
+		fprintf(to, "The look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
+			    "none passes its peak.\n", step->program->peak_multiplications,
+			step->program->peak_additions);
+}
+
+void text_rounding(FILE *to, const struct step *step)
+{
+	const struct drift drift = drift_of(step);
+	if (drift.known)
+		fprintf(to, "%s.\n", drift_text(&drift, step->model->h));
+	if (step->rounding.known)
+		fprintf(to, "%s.\n", rounding_text(step));
 }

@@ -5,7 +5,6 @@
 #include "model/reads.h"
 #include "report/report.h"
 #include "step/collocation/collocation.h"
-#include "step/cost.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
 #include "step/linear/images.h"
@@ -101,31 +100,15 @@ static void text_tuning(FILE *to, const struct step *step)
 
 static void text_operations(FILE *to, const struct step *step)
 {
-	const struct model *model = step->shown->model;
-	const struct program *program = step->program;
-	fprintf(to, "Step: form %s, h = %s s; %d multiplications, %d additions", step_form_text(step),
-		readable_text(model->h), program->multiplications, program->additions);
-	if (step->refresh)
-		fprintf(to, "; every %d steps, for the functions of the loads, %d and %d more", step->refresh->steps,
-			program->forcing_multiplications, program->forcing_additions);
-	else if (program->forcing_multiplications)
-		fprintf(to, " (%d and %d of them for the functions of the loads%s%s)", program->forcing_multiplications,
-			program->forcing_additions, step->no.refresh ? "; no refresh: " : "",
-			step->no.refresh ? step->no.refresh : "");
-	if (program->calls)
-		fprintf(to, ", %d calls of the model's own functions", program->calls);
-	if (step->program->peak_multiplications)
-		fprintf(to, ".\nThe look for peaks takes %d and %d more, the outputs counted, where a bound shows that "
-			"none passes its peak",
-			program->peak_multiplications, program->peak_additions);
+	fprintf(to, "Step: form %s, h = %s s; %s.\n", step_form_text(step), readable_text(step->model->h),
+		operations_text(step));
+	if (step->no.refresh && step->program->forcing_multiplications)
+		fprintf(to, "No refresh of the functions of the loads: %s.\n", step->no.refresh);
+	text_peaks(to, step);
 	if (step->model->relative)
-		fprintf(to, ".\nRigid-body modes are kept apart from relative coordinates: the step keeps %s.\n",
+		fprintf(to, "Rigid-body modes are kept apart from relative coordinates: the step keeps %s.\n",
 			relative_text(step->model));
-	struct drift drift = drift_of(step);
-	if (drift.known)
-		fprintf(to, ".\n%s", drift_text(&drift, step->model->h));
-	if (step->rounding.known)
-		fprintf(to, ".\n%s", rounding_text(step));
+	text_rounding(to, step);
 }
 
 /* About 231 instructions a step on a Cortex-M4, 40 bytes of an instance */
@@ -143,7 +126,6 @@ static void text_board(FILE *to, const struct step *step)
 void text_cost(FILE *to, const struct step *step)
 {
 	text_operations(to, step);
-	fputs(".\n", to);
 	text_board(to, step);
 	if (step->choice)
 		text_needs(to, step);
@@ -154,7 +136,6 @@ static void text_step(FILE *to, const struct step *step)
 	const struct model *model = step->shown->model;
 	const char *no_at = step_objection(step, CAN_AT);
 	text_operations(to, step);
-	fputs(".\n", to);
 	text_board(to, step);
 	if (step->shown->no.phi)
 		fprintf(to, "There is no Phi: %s.\n", step->shown->no.phi);

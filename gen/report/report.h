@@ -51,6 +51,9 @@ void json_units(FILE *to, const struct step *step);          /* a member of an o
 /* ---- course.c: what a step does, in sentences that the C has, too ---- */
 
 void text_scheme(FILE *to, const struct step *step);
+const char *operations_text(const struct step *step);       /* 47 multiplications, 46 additions */
+void text_peaks(FILE *to, const struct step *step);         /* what the look for them takes */
+void text_rounding(FILE *to, const struct step *step);      /* of constants, and of the first steps */
 
 /* ---- nonlinear.c: what poles and frequency responses would leave out ---- */
 

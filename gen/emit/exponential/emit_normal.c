@@ -2,7 +2,6 @@
 /* Steps in normal modes: what the runtime's normal.h, which the model's file includes, and its within.h are given of
  * them: tables, sums over them, sizes. */
 #include "inner.h"
-#include "emit/series/series.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
