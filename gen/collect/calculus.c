@@ -383,6 +383,12 @@ static struct form *place_param(const struct point *p, const struct atom *a)
 	return form_constant(value);
 }
 
+static bool shares_terms(const struct form *a, const struct form *b)
+{
+	return a == b || (a->terms && a->term == b->term);
+}
+
+/* Nobody else's terms: the point frees what it knows. */
 static struct form *place_atom(struct point *p, const struct atom *a)
 {
 	if (a->kind == ATOM_PARAM)
@@ -392,14 +398,16 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	if (a->kind == ATOM_CHOOSE && is_constant(x[0])) {      /* the other branch need not be defined here */
 		RATIONAL truth = ZERO;
 		constant_value(p->c, x[0], truth);
-		int taken = mpq_sgn(truth) != 0 ? 1 : 2;
-		return place_form(p, a->operand[taken]);
+		const struct form *taken = a->operand[mpq_sgn(truth) != 0 ? 1 : 2];
+		return is_constant(taken) ? sum(taken, NEW(struct form)) : place_form(p, taken);
 	}
 	for (int i = 1; i < a->operands; i++)
 		x[i] = place_form(p, a->operand[i]);
 	struct form *placed = a->kind == ATOM_PRODUCT ? place_product(p, a, x) : kept_again(p->c, a, x);
 	for (int i = 0; i < a->operands && is_constant(placed); i++) /* else atoms may hold them */
-		if (is_constant(x[i]) && !is_constant(a->operand[i]) && placed != x[i])
+		if (is_constant(a->operand[i]) && shares_terms(placed, x[i]))
+			placed = sum(placed, NEW(struct form));
+		else if (is_constant(x[i]) && !is_constant(a->operand[i]) && !shares_terms(placed, x[i]))
 			form_free(x[i]);
 	return placed;
 }
