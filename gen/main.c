@@ -279,10 +279,9 @@ static bool choose(struct work *w)
 /* Of what is printed the C and its header have derivatives. */
 static bool derive(struct work *w)
 {
-	const char *without = w->options.fmu ? "an FMU" : w->options.page ? "a page" : NULL;
-	if (without && w->spec->sensitivities > 0)
-		say_note(w->spec->sensitivity[0].at, "%s has the model without its derivatives", without);
-	return w->options.print > PRINT_HEADER || w->options.fmu || w->options.page || find_derivatives(w->step);
+	if (w->options.page && w->spec->sensitivities > 0)
+		say_note(w->spec->sensitivity[0].at, "a page has the model without its derivatives");
+	return w->options.print > PRINT_HEADER || w->options.page || find_derivatives(w->step);
 }
 
 /* ---- from a step to texts ---- */

@@ -203,8 +203,8 @@ static void print_head_2(FILE *to, const struct fmu *f)
 		attribute_text(f->title), f->token);
 	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canHandleVariableCommunicationStepSize=\"false\" "
 		    "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
-		    "canSerializeFMUstate=\"true\">\n"
-		    "    <SourceFiles>\n", f->name);
+		    "canSerializeFMUstate=\"true\"%s>\n"
+		    "    <SourceFiles>\n", f->name, f->derives ? " providesDirectionalDerivative=\"true\"" : "");
 	for (int i = 0; i < FMU_SOURCES; i++)
 		fprintf(to, "      <File name=\"%s\"/>\n", f->source[i]);
 	fputs("    </SourceFiles>\n"
@@ -218,7 +218,8 @@ static void print_head_3(FILE *to, const struct fmu *f)
 		    "variableNamingConvention=\"flat\">\n", attribute_text(f->title), f->token);
 	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canGetAndSetFMUState=\"true\" "
 		    "canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\" "
-		    "fixedInternalStepSize=\"%s\"%s/>\n", f->name, shortest(f->h),
+		    "fixedInternalStepSize=\"%s\"%s%s/>\n", f->name, shortest(f->h),
+		f->derives ? " providesDirectionalDerivatives=\"true\" providesAdjointDerivatives=\"true\"" : "",
 		f->crosses ? " mightReturnEarlyFromDoStep=\"true\"" : "");
 }
 

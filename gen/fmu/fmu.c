@@ -52,6 +52,60 @@ static uint64_t mark_of(const struct fmu *f, const char *code, const char *heade
 	return hash;
 }
 
+static int column_by(const struct derivatives *d, const struct symbol *symbol)
+{
+	for (int i = 0; i < d->columns; i++)
+		if (d->column[i].symbol == symbol)
+			return i;
+	return -1;
+}
+
+/* Of each input, or tunable param: its column; *all: no other than -1 is missing */
+static const char *columns_text(const struct step *step, bool params, bool *all)
+{
+	const struct model *model = step->model;
+	const struct tuning *tuning = tunables_of(model);
+	const char *text = "";
+	for (const struct symbol *s = model->spec->first; s && !params; s = s->next)
+		if (s->kind == SYMBOL_INPUT && !s->delayed) {
+			const int column = column_by(step->derivatives, s);
+			text = format("%s%d, ", text, column);
+			*all = *all && column >= 0;
+		}
+	for (int k = 0; params && tuning && k < tuning->given; k++) {
+		const int column = column_by(step->derivatives, tuning->param[k].symbol);
+		text = format("%s%d, ", text, column);
+		*all = *all && column >= 0;
+	}
+	return text;
+}
+
+static const char *derivatives_text(const struct fmu *f, const struct step *step)
+{
+	bool all = true;
+	const struct derivatives *d = step->derivatives;
+	if (!d)
+		return "";
+	return format("#define FMU_DERIVATIVES %s_derivatives\n"
+		      "#define FMU_SEEDED %d\n"
+		      "#define FMU_ZERO(ds) %s_set_d(ds, NULL)\n"
+		      "typedef %s_d fmu_derived;\n"
+		      "enum { FMU_COLUMNS = %d };\n"
+		      "static const int fmu_column_of_input[] = {%s-1};\n"
+		      "static const int fmu_column_of_param[] = {%s-1};\n", f->name, d->seeded, f->name, f->name,
+		      d->columns, columns_text(step, false, &all), columns_text(step, true, &all));
+}
+
+static bool derives_by_all(const struct step *step)
+{
+	bool all = step->derivatives != NULL;
+	if (!all)
+		return false;
+	columns_text(step, false, &all);
+	columns_text(step, true, &all);
+	return all;
+}
+
 /* fmu_model.h, which plfmu.h asks for */
 static const char *model_header(const struct fmu *f, const struct step *step, uint64_t mark)
 {
@@ -74,14 +128,14 @@ static const char *model_header(const struct fmu *f, const struct step *step, ui
 		      "%s"
 		      "enum { FMU_STATES = %d, FMU_INPUTS = %d, FMU_OUTPUTS = %d, FMU_PARAMS = %d,\n"
 		      "       FMU_CONSTANTS = %d };\n"
-		      "static const double fmu_constant[] = {%s0.0};\n\n"
+		      "static const double fmu_constant[] = {%s0.0};\n%s\n"
 		      "#endif\n",
 		      f->version, name, fmu_header_name(step->model), name, f->single ? "float" : "double",
 		      f->single ? "f" : "", name, shortest(f->h), f->token, (unsigned long long)mark,
 		      f->crosses ? format("#define FMU_CROSSED(s) %s_crossed(s)\n", name) : "", system->states,
 		      outer_inputs(step->model), step->model->outputs,
 		      tunables_of(step->model) ? tunables_of(step->model)->given : 0, f->variables.constants,
-		      constants_text(&f->variables));
+		      constants_text(&f->variables), derivatives_text(f, step));
 }
 
 static void add_text(struct fmu *f, const char *name, const char *text)
@@ -102,6 +156,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	f->h = nearest_double(outer_step(model));
 	f->math = strstr(code, "\n#include <math.h>\n") != NULL;
 	f->crosses = strstr(header, format("\nuint64_t %s_crossed(", f->name)) != NULL;
+	f->derives = derives_by_all(step);
 	f->variables = variables_of(step);
 	const uint64_t mark = mark_of(f, code, header);
 	const uint64_t more = hash_of(mark, "token");

@@ -57,6 +57,7 @@ struct fmu {
 	double h;
 	bool math;                  /* its C needs the library of <math.h> */
 	bool crosses;               /* it has breakpoints, and counts how often they are crossed */
+	bool derives;               /* it has derivatives by every input and tunable param */
 	struct fmu_variables variables;
 	const char *source[FMU_SOURCES]; /* of sources/: those that are compiled */
 	struct archive archive;

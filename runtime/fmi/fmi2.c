@@ -135,6 +135,16 @@ FMI2_Export fmi2Status FMI2(SetReal)(fmi2Component c, const fmi2ValueReference v
     return c ? status_of(fmu_set((fmu_instance *)c, vr, nvr, value)) : fmi2Error;
 }
 
+/* ---- derivatives, of outputs by inputs and tunable params ---- */
+
+FMI2_Export fmi2Status FMI2(GetDirectionalDerivative)(fmi2Component c, const fmi2ValueReference vUnknown_ref[],
+    size_t nUnknown, const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
+    fmi2Real dvUnknown[])
+{
+    return c ? status_of(fmu_derivative((fmu_instance *)c, "fmi2GetDirectionalDerivative", false, vUnknown_ref,
+                                        nUnknown, vKnown_ref, nKnown, dvKnown, dvUnknown)) : fmi2Error;
+}
+
 /* ---- a step: done when it returns, so nothing is ever pending ---- */
 
 FMI2_Export fmi2Status FMI2(DoStep)(fmi2Component c, fmi2Real currentCommunicationPoint,
@@ -238,7 +248,7 @@ FMI2_Export fmi2Status FMI2(DeSerializeFMUstate)(fmi2Component c, const fmi2Byte
     return status_of(fmu_deserialize((fmu_instance *)c, serializedState, size, FMUstate));
 }
 
-/* ---- what this FMU does not offer: no variables of other types, no derivatives, no model exchange ---- */
+/* ---- what this FMU does not offer: no variables of other types, no model exchange ---- */
 
 /* Such a function reads its instance alone. */
 #ifdef __GNUC__
@@ -257,9 +267,6 @@ FMI2_Export fmi2Status FMI2(DeSerializeFMUstate)(fmi2Component c, const fmi2Byte
 ABSENT_TYPE(Integer)
 ABSENT_TYPE(Boolean)
 ABSENT_TYPE(String)
-ABSENT(GetDirectionalDerivative, (fmi2Component c, const fmi2ValueReference vUnknown_ref[], size_t nUnknown,
-                                  const fmi2ValueReference vKnown_ref[], size_t nKnown, const fmi2Real dvKnown[],
-                                  fmi2Real dvUnknown[]))
 ABSENT(EnterEventMode, (fmi2Component c))
 ABSENT(NewDiscreteStates, (fmi2Component c, fmi2EventInfo *fmi2eventInfo))
 ABSENT(EnterContinuousTimeMode, (fmi2Component c))

@@ -166,6 +166,30 @@ FMI3_Export fmi3Status FMI3(SetFloat64)(fmi3Instance instance, const fmi3ValueRe
     return status_of(fmu_set((fmu_instance *)instance, valueReferences, nValueReferences, values));
 }
 
+/* ---- derivatives, of outputs by inputs and tunable params ---- */
+
+FMI3_Export fmi3Status FMI3(GetDirectionalDerivative)(fmi3Instance instance, const fmi3ValueReference unknowns[],
+    size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[], size_t nSeed,
+    fmi3Float64 sensitivity[], size_t nSensitivity)
+{
+    if (!instance || nSeed != nKnowns || nSensitivity != nUnknowns) {
+        return fmi3Error;
+    }
+    return status_of(fmu_derivative((fmu_instance *)instance, "fmi3GetDirectionalDerivative", false, unknowns,
+                                    nUnknowns, knowns, nKnowns, seed, sensitivity));
+}
+
+FMI3_Export fmi3Status FMI3(GetAdjointDerivative)(fmi3Instance instance, const fmi3ValueReference unknowns[],
+    size_t nUnknowns, const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[], size_t nSeed,
+    fmi3Float64 sensitivity[], size_t nSensitivity)
+{
+    if (!instance || nSeed != nUnknowns || nSensitivity != nKnowns) {
+        return fmi3Error;
+    }
+    return status_of(fmu_derivative((fmu_instance *)instance, "fmi3GetAdjointDerivative", true, unknowns, nUnknowns,
+                                    knowns, nKnowns, seed, sensitivity));
+}
+
 /* ---- a step ---- */
 
 FMI3_Export fmi3Status FMI3(DoStep)(fmi3Instance instance, fmi3Float64 currentCommunicationPoint,
@@ -244,7 +268,7 @@ FMI3_Export fmi3Status FMI3(DeserializeFMUState)(fmi3Instance instance, const fm
     return status_of(fmu_deserialize((fmu_instance *)instance, serializedState, size, FMUState));
 }
 
-/* ---- what this FMU does not offer: no variables of other types, no derivatives, events, clocks, configuration ---- */
+/* ---- what this FMU does not offer: no variables of other types, no events, clocks, configuration ---- */
 
 /* Such a function reads its instance alone. */
 #ifdef __GNUC__
@@ -288,12 +312,6 @@ ABSENT(GetVariableDependencies, (fmi3Instance instance, fmi3ValueReference depen
                                  size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
                                  size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
                                  size_t nDependencies))
-ABSENT(GetDirectionalDerivative, (fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
-                                  const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[],
-                                  size_t nSeed, fmi3Float64 sensitivity[], size_t nSensitivity))
-ABSENT(GetAdjointDerivative, (fmi3Instance instance, const fmi3ValueReference unknowns[], size_t nUnknowns,
-                              const fmi3ValueReference knowns[], size_t nKnowns, const fmi3Float64 seed[], size_t nSeed,
-                              fmi3Float64 sensitivity[], size_t nSensitivity))
 ABSENT(EnterConfigurationMode, (fmi3Instance instance))
 ABSENT(ExitConfigurationMode, (fmi3Instance instance))
 ABSENT(GetIntervalDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,

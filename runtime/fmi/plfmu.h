@@ -8,6 +8,8 @@
  *     fmu_constant                          values of the params that nothing changes
  *     FMU_H                                 step [s], as a double whatever the model's type
  *     FMU_TOKEN, FMU_MARK                   what the importer has to name; the same as a number
+ *     FMU_DERIVATIVES                       not there: it has none; else fmu_derived, FMU_COLUMNS, FMU_SEEDED,
+ *                                           FMU_ZERO(ds), and the columns of inputs and params, -1: it has none
  *     FMU_CROSSED(s)                        crossings of its breakpoints since the start; not there: it has none
  *
  * Value references: 0 time, then the inputs, the outputs, the tunable params, the states and the other params, in the
@@ -306,6 +308,79 @@ static enum fmu_result fmu_get(fmu_instance *i, const uint32_t *reference, size_
         }
     }
     return FMU_OK;
+}
+
+#ifdef FMU_DERIVATIVES
+static int fmu_column(uint32_t reference)
+{
+    uint32_t at;
+    const enum fmu_kind kind = fmu_find(reference, &at);
+    return kind == FMU_KIND_INPUT ? fmu_column_of_input[at] : kind == FMU_KIND_PARAM ? fmu_column_of_param[at] : -1;
+}
+
+/* Of outputs by inputs and tunable params, at the state of now: J[output][column] */
+static void fmu_jacobian(const fmu_data *d, fmu_real *J)
+{
+    fmu_state scratch;
+    fmu_derived ds;
+    FMU_DERIVATIVES.init(&scratch, &ds);
+    FMU_ZERO(&ds);
+#if FMU_SEEDED
+    {
+        int k;
+        for (k = 0; k < FMU_INPUTS; k++) {
+            ds.du[k] = 1;
+        }
+    }
+#endif
+    FMU_DERIVATIVES.out(&d->state, &ds, J);
+}
+#endif
+
+/* J seed of the unknowns, or, backwards, its transpose of the knowns */
+static enum fmu_result fmu_derivative(fmu_instance *i, const char *function, bool backwards, const uint32_t *unknown,
+    size_t unknowns, const uint32_t *known, size_t knowns, const double *seed, double *sensitivity)
+{
+#ifdef FMU_DERIVATIVES
+    fmu_real J[FMU_OUTPUTS * FMU_COLUMNS];
+    enum fmu_result result = fmu_settle(i);
+    uint32_t output;
+    size_t r, k;
+    int column;
+    (void)function;
+    if (result != FMU_OK) {
+        return result;
+    }
+    fmu_jacobian(&i->data, J);
+    for (r = 0; r < (backwards ? knowns : unknowns); r++) {
+        sensitivity[r] = 0.0;
+    }
+    for (r = 0; r < unknowns; r++) {
+        if (fmu_find(unknown[r], &output) != FMU_KIND_OUTPUT) {
+            return fmu_say(i, FMU_ERROR, "outputs have derivatives, and value reference %lu is none",
+                           (unsigned long)unknown[r]);
+        }
+        for (k = 0; k < knowns; k++) {
+            column = fmu_column(known[k]);
+            if (column < 0) {
+                return fmu_say(i, FMU_ERROR, "there is no derivative by the variable of value reference %lu",
+                               (unsigned long)known[k]);
+            }
+            sensitivity[backwards ? k : r] += (double)J[output * FMU_COLUMNS + (uint32_t)column] *
+                                              seed[backwards ? r : k];
+        }
+    }
+    return FMU_OK;
+#else
+    (void)backwards;
+    (void)unknown;
+    (void)unknowns;
+    (void)known;
+    (void)knowns;
+    (void)seed;
+    (void)sensitivity;
+    return fmu_absent(i, function);
+#endif
 }
 
 static enum fmu_result fmu_set_one(fmu_instance *i, uint32_t reference, double value)

@@ -429,4 +429,80 @@ result $? 'names for calibration in float, of a model with regions'
 [ $? -eq 2 ] && grep -q 'error: --a2l goes with C: it does not go with --explain' log
 result $? 'names for calibration without C'
 
+# ---- derivatives at a communication point, against those of the equations by hand ----
+
+cat >derived.spec <<'END'
+model derived
+param m = 2, k = 50
+tunable k
+coord x
+input u, v
+sensitivity v, k, u
+m*x'' + 0.5*x' + k*x = 3*cos(4*t) + u
+output x, acc = x'', q = k*x + 2*u - v
+step 0.01
+END
+cat >derive.c <<'END'
+#include FACE
+#include <math.h>
+enum { U = 1, V, X, ACC, Q, K, STATE };
+int main(void)
+{
+    const uint32_t known[] = {U, V, K}, out[] = {X, ACC, Q}, set[] = {U, V, K}, state[] = {STATE, STATE + 1};
+    const double value[] = {0.7, -0.2, 60};
+    fmu_instance *i = fmu_new("derive", FMU_TOKEN);
+    bool early;
+    double y[2], found, worst = 0;
+    fmu_enter(i, "");
+    fmu_initialize(i, 0.0);
+    fmu_leave(i, "");
+    fmu_set(i, set, 3, value);
+    fmu_step(i, 0.0, 0.05, "", &early);
+    fmu_get(i, state, 2, y);
+    const double own[3][3] = {{0, 0, 0}, {0.5, 0, -y[0] / 2}, {2, -1, y[0]}};
+    for (int k = 0; k < 3; k++)
+        for (int o = 0; o < 3; o++) {
+            const double seed = 3;
+            if (!DIRECTIONAL(i, &out[o], 1, &known[k], 1, &seed, &found)) return 1;
+            worst = fmax(worst, fabs(found - 3 * own[o][k]));
+            printf("output %d by %d: %.17g, %.17g\n", o, k, found / 3, own[o][k]);
+        }
+    double all[3];
+    if (!DIRECTIONAL(i, out, 3, known, 3, value, all)) return 1;
+    for (int o = 0; o < 3; o++)
+        worst = fmax(worst, fabs(all[o] - (0.7 * own[o][0] - 0.2 * own[o][1] + 60 * own[o][2])));
+#ifdef ADJOINT
+    const double weight[3] = {1, -2, 0.5};
+    double back[3];
+    if (!ADJOINT(i, out, known, weight, back)) return 1;
+    for (int k = 0; k < 3; k++)
+        worst = fmax(worst, fabs(back[k] - (own[0][k] - 2 * own[1][k] + 0.5 * own[2][k])));
+#endif
+    return !(y[0] != 0 && worst < 1e-14) || DIRECTIONAL(i, &state[0], 1, &known[0], 1, value, &found) ||
+           DIRECTIONAL(i, &out[0], 1, &state[0], 1, value, &found);
+}
+END
+for version in 3 2; do
+    : >log
+    "$plgen" --fmu-version $version --fmu derived.fmu derived.spec >log 2>&1 && unpack derived.fmu derived
+    face=fmi$version.c
+    if [ $version = 3 ]; then
+        ways="-DDIRECTIONAL(i,o,m,k,n,s,f)=(FMI3(GetDirectionalDerivative)(i,o,m,k,n,s,n,f,m)==fmi3OK)"
+        back="-DADJOINT(i,o,k,s,f)=(FMI3(GetAdjointDerivative)(i,o,3,k,3,s,3,f,3)==fmi3OK)"
+        provided='providesDirectionalDerivatives="true" providesAdjointDerivatives="true"'
+    else
+        ways="-DDIRECTIONAL(i,o,m,k,n,s,f)=(FMI2(GetDirectionalDerivative)(i,o,m,k,n,s,f)==fmi2OK)"
+        back=-DBACK
+        provided='providesDirectionalDerivative="true"'
+    fi
+    grep -q "$provided" derived/modelDescription.xml || echo "$provided: not there" >>log
+    $run_cc -Iderived/sources "-DFACE=\"$face\"" "$ways" "$back" derive.c derived/sources/derived_pl.c -lm -o derive \
+        >>log 2>&1 && ./derive >>log
+    result $? "derivatives of FMI $version: of outputs by inputs and tunables, within 1e-14"
+    ! grep 'not there' log
+    result $? "derivatives of FMI $version are declared"
+done
+sed 's/^sensitivity.*/sensitivity u/' derived.spec >few.spec
+"$plgen" --fmu few.fmu few.spec >log 2>&1 && unpack few.fmu few && ! grep -q providesD few/modelDescription.xml
+result $? 'derivatives by some alone are not declared'
 tap_end
