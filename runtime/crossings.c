@@ -242,6 +242,7 @@ static void vary_held(const pl_switching *m, instant *at)
 
 static int pass(const pl_switching *m, instant *at, const event *e, real time)
 {
+    VARIED(at->time = time;)
     VARIED(meet_breakpoint(m, at, e->expression, e->breakpoint);)
     const int listed = list(m->max_events, at->c, at->crossing, time, e->expression, e->breakpoint, e->upward);
     enter(m->matrix, at->c, at->c->region + (e->upward ? e->stride : -e->stride));

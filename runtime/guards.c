@@ -189,6 +189,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
         real s, next;
         int has_left;
         pl_multiply(terms, n, coefficients, row, e);
+        VARIED(miss(m, at, k, e);)
         next = m->guard[k].impact >= 0 && e[1] < 0 ? sizes(n, row, coefficients + n) : -1;
         has_left = next >= 0 && magnitude(e[0] - m->limit[k]) <= noise_of(magnitude(m->limit[k]) + size + next);
         if (!(has_left ? look_behind(&f, e, next) : look_beyond(&f, e, 1, m->limit[k], size))) {

@@ -62,6 +62,15 @@ static void vary_set(const pl_guards *m, instant *at, int set)
     }
 }
 
+static real slope_at(int degree, const real *e, real s)
+{
+    real slope = 0;
+    for (; degree > 0; degree--) {
+        slope = slope * s + (real)degree * e[degree];
+    }
+    return slope;
+}
+
 /* Of x - (e - b) back, put on the guard of an impact */
 static void vary_place(const pl_guards *m, instant *at, const pl_impact *impact, const real *back)
 {
@@ -76,6 +85,48 @@ static void vary_place(const pl_guards *m, instant *at, const pl_impact *impact,
         for (i = 0; i < n; i++) {
             S[i] -= back[i] * off;
         }
+    }
+}
+
+/* Impacts at one instant on each other: another order would leave another derivative. */
+static void vary_jump(const pl_guards *m, instant *at, int k)
+{
+    pl_variation *v = at->v;
+    const real *back = m->back, *row = m->row + (ptrdiff_t)m->impact[k].expression * m->size;
+    int i;
+    for (i = 0; v != NULL && i < m->impacts; i++, back += m->size) {
+        if (i != k && v->acted >> i & 1 && (m->impact[k].rest < 0 || magnitude(dot(m->size, row, back)) > 0)) {
+            v->status |= PL_D_ONE_SIDED;
+        }
+    }
+    if (v != NULL) {
+        v->acted |= (uint32_t)1 << k;
+        vary_set(m, at, m->impact[k].jump);
+    }
+}
+
+/* A guard of an impact that is all but met, where it turns back: e, its polynomial over a piece */
+static void miss(const pl_guards *m, const instant *at, int k, const real *e)
+{
+    pl_variation *v = at->v;
+    const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * m->size;
+    real low = 0, high = 1, size = 0;
+    int i;
+    if (v == NULL || m->guard[k].impact < 0 || !(e[1] > 0) || !(slope_at(m->degree, e, 1) < 0)) {
+        return;
+    }
+    for (i = 0; i < 40; i++) {
+        const real middle = (low + high) / 2;
+        *(slope_at(m->degree, e, middle) > 0 ? &low : &high) = middle;
+    }
+    for (i = 0; i < m->size; i++) {
+        size += magnitude(row[i]) * larger(v->scale[i], magnitude(at->x[i]));
+    }
+    for (i = m->degree, high = 0; i >= 0; i--) {
+        high = high * low + e[i];
+    }
+    if (high < m->limit[k] && pl_saltation_misses(size, m->limit[k] - high)) {
+        v->status |= PL_D_GRAZING;
     }
 }
 
@@ -96,6 +147,7 @@ static void meet_guard(const pl_guards *m, instant *at, int k)
         return;
     }
     leave_field(m, at);
+    v->acted = 0;
     for (p = 0; p < v->columns; p++) {
         v->dg[p] = varied_row(v, p, v->matrices + OF_GUARDS, k, m->size, at->x);
     }
@@ -338,7 +390,7 @@ static real least_speed(const pl_guards *m, const instant *at, real least)
 
 static void jump(const pl_guards *m, instant *at, int k)
 {
-    VARIED(vary_set(m, at, m->impact[k].jump);)
+    VARIED(vary_jump(m, at, k);)
     assign(m, m->impact[k].jump, at->x, at->work);
 }
 

@@ -435,9 +435,11 @@ typedef struct pl_variation {
     PL_REAL *work;                 /* PL_VARIATION_WORK(size, degree) */
     int segment;                   /* of time */
     unsigned status;               /* PL_D_... bits are added */
-    /* An event that has begun: */
-    int pending, function, before, sticks, upward;
-    PL_REAL rate, bend, size;
+    /* An event that has begun, and what met before it: */
+    int pending, function, before, sticks, upward, last;
+    int jumped;
+    uint32_t acted;                /* impacts, as bits */
+    PL_REAL rate, bend, size, time, last_time;
 } pl_variation;
 
 /* A change of the loads at the end of a segment of time begins: x' = A x up to then.  The next call ends it. */

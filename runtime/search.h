@@ -378,8 +378,10 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
     v.first = PL(varied_first);
     v.entry = PL(varied);
     v.segment = v.pending = v.sticks = v.upward = 0;
-    v.function = -1;
+    v.function = v.last = -1;
     v.status = 0;
+    v.jumped = 0;
+    v.acted = 0;
     v.S = S[0];
     v.scale = scale;
     v.when = when;

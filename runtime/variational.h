@@ -66,6 +66,7 @@ static void meet(const searched *m, instant *at, const real *row, int function)
     const int n = m->size;
     int p, i;
     v->rate = dot(n, row, column_of_time(m, v));
+    v->time = at->time;
     v->function = function;
     v->before = at->c->region;
     v->size = 0;
@@ -99,16 +100,33 @@ static int field_jumps(const searched *m, const instant *at)
     return any;
 }
 
+/* Events at one instant, or where a step, a segment of time or a sample ends: the derivative is that of one side. */
+static void look_at_order(const searched *m, pl_variation *v, int jumps)
+{
+    const real none = 64 * REAL_EPSILON * m->h;
+    const int together = v->last >= 0 && v->last != v->function && v->time - v->last_time <= none;
+    if (v->function >= 0 && jumps && (v->time <= none || v->time >= m->h - none)) {
+        v->status |= PL_D_ONE_SIDED;
+    }
+    if (together && v->function >= 0 && (jumps || v->jumped)) {
+        v->status |= PL_D_ONE_SIDED;
+    }
+    v->last = v->function;
+    v->last_time = v->time;
+    v->jumped = jumps;
+}
+
 /* Behind an event, in the region where x goes on: S from that at the event's time to that at fixed time */
 static void end_event(const searched *m, instant *at)
 {
     pl_variation *v = at->v;
-    int p, done;
+    int p, done, jumps = 0;
     if (v == NULL || !v->pending) {
         return;
     }
     done = v->sticks && projects(m, at);
     if (!done && field_jumps(m, at)) {
+        jumps = 1;
         for (p = 0; p < v->columns; p++) {
             pl_saltation_pass(m->size, column_of_time(m, v), v->when[p], v->S + (ptrdiff_t)p * m->size);
         }
@@ -116,6 +134,7 @@ static void end_event(const searched *m, instant *at)
             v->status |= PL_D_GRAZING;
         }
     }
+    look_at_order(m, v, done || jumps);
     v->pending = v->sticks = 0;
     v->function = -1;
     vary_held(m, at);

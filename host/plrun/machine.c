@@ -322,6 +322,13 @@ int instance_status(const struct instance *i)
 	return !m->has_status ? 0 : m->single ? m->modelf->status(i->state) : m->model->status(i->state);
 }
 
+unsigned instance_doubt(const struct instance *i)
+{
+	const struct machine *m = i->machine;
+	return !m->derivatives ? 0 : m->single ? m->derivativesf->status(i->derivatives)
+					       : m->derivatives->status(i->derivatives);
+}
+
 double instance_time(const struct instance *i)
 {
 	const struct machine *m = i->machine;

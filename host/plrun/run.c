@@ -97,6 +97,22 @@ static char *status_text(int status, double t, bool single)
 	return text;
 }
 
+/* What is doubted of the derivatives from here on, once */
+static void report_doubt(const struct instance *s, unsigned *known, bool single)
+{
+	const unsigned doubt = instance_doubt(s) & ~*known;
+	const struct { unsigned bit; const char *text; } all[] = {
+		{ PL_D_GRAZING, "a stop was met, or all but met, so flatly that behind it they are not known" },
+		{ PL_D_ONE_SIDED, "events fell together, and they are those of one order" },
+		{ PL_D_UNDECIDED, "what is to stick and what is to slip had no answer" }
+	};
+	*known |= doubt;
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		if (doubt & all[i].bit)
+			say_note(format("derivatives from t = %s on: %s", shortest(instance_time(s), single),
+					all[i].text));
+}
+
 /* ---- states far below the size that their error is measured by ---- */
 
 /* Per state its size in the rows since a power of two, and in as many before, and by how much a step may miss it */
@@ -187,12 +203,15 @@ static char *take_steps(const struct job *job, struct instance *s, struct window
 	struct sizes sizes = sizes_new(job);
 	const bool starts_at_zero = job->reported && is_at_zero(job, s);
 	char *error = NULL;
+	unsigned doubt = 0;
 	instance_out(s, out);
 	each(who, 0, out);
 	for (uint64_t k = 1; k <= job->steps && !error; k++) {
 		if (job->record)
 			take_sample(w);
 		instance_step(s, w->u);
+		if (job->reported)
+			report_doubt(s, &doubt, job->machine->single);
 		int status = instance_status(s);
 		take_sizes(&sizes, job, s, k);
 		if (status) {
