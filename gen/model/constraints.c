@@ -84,6 +84,12 @@ static int state_at(const struct start *w, int coord, int level)
 	return level ? w->b->model->system.velocity[coord] : coord;
 }
 
+/* What a derivative's constraint moves are derivatives alone: the state is where it is without them. */
+static bool moves(const struct start *w, int coord, int row)
+{
+	return coord >= rows_of(w->b)->constraint[row].statement->own;
+}
+
 static void find_slopes(struct start *w, int level)
 {
 	const struct form **held = ARRAY(const struct form *, w->rows);
@@ -93,7 +99,7 @@ static void find_slopes(struct start *w, int level)
 	for (int j = 0; j < w->n; j++) {
 		struct form **slope = form_derivatives(&w->b->collector, w->rows, held, false, j, level);
 		for (int i = 0; i < w->rows; i++)
-			w->slope[level][j * w->rows + i] = slope[i];
+			w->slope[level][j * w->rows + i] = moves(w, j, i) ? slope[i] : form_number(0);
 	}
 }
 
