@@ -24,8 +24,7 @@ import numpy as np
 
 from . import _code
 from ._code import VERSION, Code, Compiler, Error, Params, Units, Value
-from ._derivatives import Derivatives
-from ._linear import Linear, StateSpace, StateSpaces
+from ._linear import Derivatives, Linear, StateSpace, StateSpaces
 
 __all__ = ['Model', 'Error', 'RunError', 'StateSpace', 'VERSION']
 STATUS = ((2, 'the step has met more crossings, or needed a longer search for them, than its bound'),
