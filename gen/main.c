@@ -294,8 +294,7 @@ static const char *base_name(const char *path)
 
 static void print_closed_form(FILE *to, const struct work *w)
 {
-	mpq_t end;
-	mpq_init(end);
+	RATIONAL end = ZERO;
 	argument_value(w->model, w->options.solution, end);
 	print_solution(to, w->model, resolvent_of(&w->model->system), end);
 }
@@ -388,14 +387,9 @@ static void print_header(struct work *w)
 }
 
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
-static bool has_inside(const struct work *w, const struct file *f)
-{
-	return w->options.bundle || w->options.fmu || algorithms_use(f->text, w->model->name);
-}
-
 static void rewrite(struct work *w, struct file *f)
 {
-	if (has_inside(w, f))
+	if (w->options.bundle || w->options.fmu || algorithms_use(f->text, w->model->name))
 		file_rewrite(f, w->model->name, print_included);
 	if (w->options.request.own_math)
 		file_rewrite(f, w->model->name, print_own_functions);
