@@ -480,8 +480,9 @@ random_events() {
 			printf "model r\nparam k = %s, F = %s, w = %s, e = %s, g = %s, R = %s\n", u(4, 20), u(1, 3),
 				u(1, 3), u(0.3, 0.9), u(0.05, 0.3), u(0.05, 0.4)
 			print "coord x, y\ninit x = " u(-0.2, 0) ", y = " u(-0.3, 0.3)
-			stick = kind == 1 || kind == 2 ? " + friction(x\047, R)" : ""
-			free = kind == 2 ? " + 30*deadzone(x - y, -g, g)" : kind == 3 ? " + 2*k*clip(y, -g, g)" : ""
+			stick = kind == 1 ? " + friction(x\047 - y\047, R)" : kind == 2 ? " + friction(x\047, R)" : ""
+			free = kind == 1 ? " - friction(x\047 - y\047, R)" : ""
+			if (kind > 1) free = kind == 2 ? " + 30*deadzone(x - y, -g, g)" : " + 2*k*clip(y, -g, g)"
 			print "x\047\047 + 0.2*x\047 + k*x" stick " + 3*(x - y)" (kind == 2 ? free : "") " = F*cos(w*t)"
 			print u(0.5, 2) "*y\047\047 + 0.3*y\047 + 5*y + 3*(y - x)" \
 				(kind == 2 ? " - 30*deadzone(x - y, -g, g)" : free) " = R*k*(t < e + 1 ? 1 : 0)"
