@@ -396,7 +396,7 @@ static const char *code_of_page(const struct step *step, const char *code, bool 
 	return format("%s\n#define PAGE(name) %s_##name\n#define PAGE_TYPE %s\n#define PAGE_H %s_H\n"
 		      "#define PAGE_STATES %d\n#define PAGE_INPUTS %d\n#define PAGE_OUTPUTS %d\n"
 		      "#define PAGE_PARAMS %d\n#define PAGE_RAMPS %d\n#define PAGE_CROSSES %d\n\n%s",
-		      code, name, name, upper, step->branch->system.states, model->spec->count.inputs, model->outputs,
+		      code, name, name, upper, step->branch->system.states, outer_inputs(model), model->outputs,
 		      tuning ? tuning->given : 0, ramps, strstr(code, format("\nuint64_t %s_crossed(", name)) != NULL,
 		      runtime_text("plpage.h"));
 }
@@ -406,7 +406,7 @@ static bool put_ahead(FILE *to, const struct step *step)
 {
 	bool some = false;
 	fputs(",\n\"ahead\":[", to);
-	for (int i = 0; i < step->model->spec->count.inputs; i++) {
+	for (int i = 0; i < outer_inputs(step->model); i++) {
 		const int ahead = samples_ahead(step->branch->system.input[i].hold);
 		fprintf(to, "%s%d", i ? "," : "", ahead);
 		some = some || ahead > 0;
@@ -420,9 +420,10 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 {
 	const struct fmu_variables v = variables_of(step);
 	struct spec *spec = step->model->spec;
+	const struct delays *delays = step->model->delays;
 	const int shown = step->model->outputs - spec->drawn;
 	fputs("{", to);
-	put_member(to, "name", step->model->name);
+	put_member(to, "name", delays ? delays->name : step->model->name);
 	fputs(",", to);
 	put_member(to, "title", title);
 	fputs(",", to);
@@ -430,7 +431,7 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	fputs(",", to);
 	put_member(to, "spec", spec->source->text);
 	fprintf(to, ",\"h\":%s,\"coords\":%d,\"hidden\":%d,\"constrained\":%s",
-		shortest(round_rational(step->model->h)), step->shown->model->n, spec->drawn,
+		shortest(round_rational(delays ? delays->h : step->model->h)), step->shown->model->n, spec->drawn,
 		spec->count.multipliers > 0 ? "true" : "false");
 	put_variables(to, "states", &v, FMU_STATE, v.count);
 	put_variables(to, "outputs", &v, FMU_OUTPUT, shown);
@@ -463,7 +464,7 @@ static bool has_outputs(const struct spec *spec)
 static bool print_live_page(FILE *to, const struct step *step, const char *code, const char *title)
 {
 	size_t length;
-	title = title ? title : step->model->name;
+	title = title ? title : step->model->delays ? step->model->delays->name : step->model->name;
 	if (!has_outputs(step->model->spec))
 		say_note(step->model->spec->name_at, "the model has no outputs: the page shows its states");
 	fputs("<!DOCTYPE html>\n<!-- SPDX-License-Identifier: MIT-0, made by plgen " PLGEN_VERSION " -->\n"

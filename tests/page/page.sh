@@ -65,6 +65,12 @@ if [ -z "$missing" ] && merging; then
 	record=$PWD/record.csv
 	equal oscillator 1.4 "{\"inputs\": {\"ground_acc\": {\"kind\": \"record\", \"record\": [$(echo "$samples" |
 		tr ' ' ',')]}}}" '' ''
+	mkdir -p late/models
+	printf '%s\n' 'model late' 'coord z' 'input u hold first' "z'' + 0.4*z' + 9*z = u + 0.5*u(t - 0.26)" \
+		'output z' 'step 1/50' >late/models/late.spec
+	sed -i 's/ground_acc/u/' record.csv
+	root=$PWD/late equal late 5.6 "{\"inputs\": {\"u\": {\"kind\": \"record\", \"record\": [$(echo "$samples" |
+		tr ' ' ',')]}}}" '' ''
 fi
 
 # Whatever names, comments and titles have in them is text.
