@@ -97,10 +97,12 @@ static void check_smooth(const struct model *model)
 		error(jump->start, NULL, "a sensitivity where the state chooses a formula that jumps is not built yet");
 }
 
-/* As many together as have a step that is unrolled: those share the loads' functions. */
+/* As many together as have a step that is unrolled: those share the loads' functions. Those of a series share the
+ * model's own, too. */
 static int columns_together(const struct step *step)
 {
-	const int together = LIMIT_UNROLLED_STATES / step->model->written->system.states - 1;
+	const int most = LIMIT_UNROLLED_STATES * (step->is.flow == FLOW_SERIES ? 4 : 1);
+	const int together = most / step->model->written->system.states - 1;
 	return together > 1 ? together : 1;
 }
 
