@@ -163,6 +163,22 @@ init x = 0.02
 2*x'' + 0.8*x' + k*a*x + idle*0 = 0
 step 0.02
 X
+# The start of the record is that of the spec's value: runs with other values of a tunable param start there too.
+cat >let.spec <<'X'
+model let_go
+param k = 4
+coord x
+init x = 1/k
+x'' + 0.2*x' + k*x = 0
+tunable k in [1, 9]
+step 0.1
+X
+run let.spec 2 | awk -F, '{ print $1 "," $2 }' >let.csv
+run let.spec -D k=3 --fit k let.csv >out && awk -F, -v n="$(sed -n 's/.* \([0-9]*\) evaluations.*/\1/p' said)" \
+	'$1 == "k" { print $2, n, "expected: 4 to 1e-12, at most 8"; off = $2 - 4
+		exit !(off < 1e-12 && off > -1e-12 && n != "" && n <= 8) }' out >log
+result $? 'a tunable param that the initial values read'
+
 # says NAME TEXT ARGUMENTS: exit status 1 or 2, nothing on standard output, and a line of this
 says() {
 	name=$1 wanted=$2

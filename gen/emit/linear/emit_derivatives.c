@@ -429,6 +429,15 @@ static void emit_outputs_of_all(const struct emitter *e)
 	close_function(e, "s");
 }
 
+/* NAME_retune leaves the initial values as they are: by a tunable param they have no derivative. */
+static void leave_start(const struct emitter *e, double *value)
+{
+	const struct derivatives *d = e->step->derivatives;
+	for (int p = 0; p < d->columns; p++)
+		for (int i = 0; i < e->system->states && d->column[p].symbol->tuning.tuned; i++)
+			value[p * e->system->states + i] = 0;
+}
+
 static void emit_start(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -443,6 +452,7 @@ static void emit_start(const struct emitter *e)
 				value[column * states + state] =
 					finite_number(e, d->block[b].step->model->initial[i]);
 		}
+	leave_start(e, value);
 	emit_array(e, "Derivatives of the initial state", "d_initial", 2, size, value, NULL);
 }
 
