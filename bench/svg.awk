@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # awk -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel is the unit
-# and points within a tenth of a line that goes on are left out; what lines, marks, areas and texts have in common is
+# and points within two of a line that goes on are left out; what lines, marks, areas and texts have in common is
 # said once; marks that are not drawn are not defined, and a mark at many places is a marker of one path. Of what lies
 # between two curves areas come first, then lines, marks and texts; what is none of these stays as it was, ten times as
 # large.
@@ -40,7 +40,7 @@ function straight(from, to,    dx, dy, size, i, along, across) {
 	for (i = from + 1; i < to; i++) {
 		along = (dx * (X[i] - X[from]) + dy * (Y[i] - Y[from])) / size
 		across = (dx * (Y[i] - Y[from]) - dy * (X[i] - X[from])) / size
-		if (along < 0 || along > size || across > 1 || across < -1) return 0
+		if (along < 0 || along > size || across > 2 || across < -2) return 0
 	}
 	return 1
 }
@@ -289,8 +289,8 @@ END {
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker" said("id", "m" m) said("markerUnits", "userSpaceOnUse") "><use" \
-				said("href", "#" part[1]) said("transform", "scale(" tenths(part[2]) ")") \
+			print "<marker" said("id", "m" m) "><use" \
+				said("href", "#" part[1]) said("transform", "scale(" part[2] ")") \
 				said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
