@@ -68,9 +68,9 @@ END {
 	if (name == "two_masses") limits = "0.3;1e-6;1e-8;1e-5;2e-6;1e-7;1e-5;1e-4;1e-4"
 	# chaotic: within this history an error at the start grows by 6e5; RADAU5 reaches its limit with 1e-15
 	if (name == "double_pendulum") limits = "1e-6;2e-8;2e-8;1e-7;2e-7;1e-8;1e-8;1e-8;2e-8"
-	# RADAU9's Newton stops too early here, after two iterations a step with a Jacobian by differences, and its error
-	# estimate, 0.27 to 0.30 of what is allowed, does not see that: found is 7.2e-8 with 1e-16; with 1e-4 of Newton's
-	# tolerance, which takes three times as many steps, 1.4e-9
+	# RADAU9's Newton stops too early here, after two iterations a step with a Jacobian by differences, and its
+	# error estimate, 0.27 to 0.30 of what is allowed, does not see that: found is 7.2e-8 with 1e-16; with 1e-4 of
+	# Newton's tolerance, which takes three times as many steps, 1.4e-9
 	if (name == "spherical_joint") limits = "1e-6;2e-9;2e-9;1e-7;1e-7;2e-9;1e-8;1e-7;2e-8"
 	split(limits, limit_of, ";")
 	for (i = 1; i <= m; i++) {
