@@ -414,68 +414,6 @@ void pl_guards_compensated_change(const pl_guards *m, PL_REAL time, PL_REAL *x, 
 
 #include "saltation.h"
 
-/* An entry that is not 0 of the derivative of a table by one column: `column` is that of x, or `size` for the number
- * that row . x is compared with. */
-typedef struct pl_varied {
-    unsigned short row, column;
-    PL_REAL value;
-} pl_varied;
-
-/* Derivatives of x at fixed time, S' = A S + A_p x, columns of `size` entries.  Of column p and block b the entries are
- * entry[first[k]] to entry[first[k + 1] - 1], k = p (matrices + 5) + b.  Blocks are A of each matrix; behind them
- * switching functions, of each segment of time in turn, breakpoints, guards, assignments, and the times of changes. */
-typedef struct pl_variation {
-    int columns, matrices, degree; /* degree: of Taylor polynomials */
-    const int *first;
-    const pl_varied *entry;
-    PL_REAL *S;                    /* columns + 1, the last one for work */
-    PL_REAL *scale;                /* the largest size of each entry of x so far */
-    PL_REAL *when, *dg;            /* columns each, for work */
-    PL_REAL *noise;                /* size, for work */
-    PL_REAL *work;                 /* PL_VARIATION_WORK(size, degree) */
-    int segment;                   /* of time */
-    unsigned status;               /* PL_D_... bits are added */
-    /* An event that has begun, and what met before it: */
-    int pending, function, before, sticks, upward, last;
-    int jumped;
-    uint32_t acted;                /* impacts, as bits */
-    PL_REAL rate, bend, size, time, last_time;
-} pl_variation;
-
-/* A change of the loads at the end of a segment of time begins: x' = A x up to then.  The next call ends it. */
-static inline void pl_variation_change(pl_variation *v, int size, const PL_REAL *A, const PL_REAL *x)
-{
-    PL_REAL *const slope = v->S + (ptrdiff_t)v->columns * size;
-    int p, k;
-    pl_multiply(size, size, A, x, slope);
-    for (k = 0; k < size; k++, A += size) {
-        v->noise[k] = 0;
-        for (p = 0; p < size; p++) {
-            v->noise[k] += A[p] * x[p] < 0 ? -A[p] * x[p] : A[p] * x[p];
-        }
-    }
-    for (p = 0; p < v->columns; p++) {
-        const int *first = v->first + p * (v->matrices + 5) + v->matrices + 4;
-        v->when[p] = 0;
-        for (k = first[0]; k < first[1]; k++) {
-            v->when[p] += v->entry[k].row == v->segment ? v->entry[k].value : 0;
-        }
-    }
-    v->pending = 1;
-    v->function = -1;
-    v->sticks = 0;
-}
-
-/* As pl_switching_start and so on; v NULL: without derivatives. */
-void pl_switching_start_d(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
-void pl_switching_advance_d(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
-                            PL_REAL *work, pl_variation *v);
-void pl_guards_start_d(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
-void pl_guards_advance_d(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
-                         PL_REAL *work, pl_variation *v);
-void pl_guards_change_d(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
-                        PL_REAL *work, pl_variation *v);
-
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
 
 /* Numbers that follow from params: these come first, then constants, then results of the operations. */
