@@ -12,11 +12,12 @@ library=$PLRT
 here=$root/tests/tunable/blocks
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
+cp "$here"/*.spec . && awk -f "$root/tests/cases.awk" "$here/specs.cases" >names || exit 99
 
 # plain NAME VALUES [OPTION ...]: plain.c, of the same equations with these values; VALUES: k=80 F=2
 plain() {
 	defines=$(echo "$2" | sed 's/[^ ]*=/-D &/g')
-	sed '/^tunable/d; s/^model .*/model plain/' "$here/$1.spec" >plain.spec
+	sed '/^tunable/d; s/^model .*/model plain/' "$1.spec" >plain.spec
 	shift 2
 	# shellcheck disable=SC2086
 	"$plgen" $defines "$@" -o plain.c plain.spec >>log 2>&1
@@ -43,7 +44,7 @@ beside() {
 	step=$([ "$h" = 0 ] || echo "--step $h")
 	real=$(case $* in *float*) echo float ;; *) echo double ;; esac)
 	# shellcheck disable=SC2086
-	"$plgen" "$@" -o "$name.c" "$here/$name.spec" >>log 2>&1 && plain "$name" "$values" $step "$@" &&
+	"$plgen" "$@" -o "$name.c" "$name.spec" >>log 2>&1 && plain "$name" "$values" $step "$@" &&
 		driver "$name" "$real" && ./beside 0 "$tolerance" "$h" $(echo "$values" | sed 's/[^ ]*=//g') >>log 2>&1
 	result $? "$name${*:+ }$* retuned to $values${step:+ }$step is as written"
 }
@@ -100,11 +101,11 @@ beside 60 train "m=3 k=1500 F=4" 0.0625
 beside 10 wide "k=90" 0
 
 : >log
-"$plgen" -o wide.c "$here/wide.spec" >>log 2>&1
+"$plgen" -o wide.c "wide.spec" >>log 2>&1
 grep -q 'There is no wide_at: an independent block has more than 64 states' wide.c && ! grep -q 'void wide_at' wide.c
 result $? 'a block beyond the limit that no param touches: no NAME_at, with the reason'
-"$plgen" -o oscillators.c "$here/oscillators.spec" >log 2>&1
-"$plgen" --explain "$here/oscillators.spec" >explained 2>>log
+"$plgen" -o oscillators.c "oscillators.spec" >log 2>&1
+"$plgen" --explain "oscillators.spec" >explained 2>>log
 grep -q 'They touch 7 of 8 independent blocks' oscillators.c && grep -q '7 of 8 independent blocks' explained &&
 	[ "$(grep -c 'oscillators_retune_group(&oscillators_block_group' oscillators.c)" = 2 ] &&
 	grep -q 's->y\[8\] = q0 + (*-0.0049947' oscillators.c
