@@ -39,7 +39,204 @@ static const real *matrix_now(const searched *m, const instant *at)
 }
 
 #ifdef WITH_DERIVATIVES
-#include "variational.h"
+
+/* Columns S = x_p beside x, in crossings_d.c and guards_d.c.
+ * In a region S' = A S + A_p x, by the same Taylor polynomials as x.  At an event (saltation.h) the jump is linear,
+ * x_i = value . x: S_i becomes value . S + value_p . x, and of one more column, which is f- before, R_x f-.  An event
+ * ends with the first piece behind it, or with the step: only then is the field f+ known.  crossings.c and impacts.h
+ * have beside it
+ *
+ *     vary_held(m, at)           S of what is held in a region
+ *     projects(m, at)            what friction that comes to stick makes of S; 0: it does not */
+static void vary_held(const searched *m, instant *at);
+static int projects(const searched *m, instant *at);
+
+/* A_p x and the like: blocks of entries, of each column those of A of each matrix, and behind them these */
+enum { OF_FUNCTIONS, OF_BREAKS, OF_GUARDS, OF_ASSIGNMENTS, OF_CHANGES, OF_ALL };
+
+static real *column_of_time(const searched *m, const pl_variation *v)
+{
+    return v->S + (ptrdiff_t)v->columns * m->size;
+}
+
+/* row_p . x of a row of a block; column `size` is what is compared with that, and taken from it */
+static real varied_row(const pl_variation *v, int column, int block, int row, int n, const real *x)
+{
+    const int *first = v->first + column * (v->matrices + OF_ALL) + block;
+    real sum = 0;
+    int k;
+    for (k = first[0]; k < first[1]; k++) {
+        if (v->entry[k].row == row) {
+            sum += v->entry[k].value * (v->entry[k].column < n ? x[v->entry[k].column] : -1);
+        }
+    }
+    return sum;
+}
+
+/* The same of a switching function less one of its breakpoints */
+static real off_breakpoint(const searched *m, const pl_variation *v, int column, int function, int breakpoint,
+                           const real *x)
+{
+    int i, place = breakpoint;
+    for (i = 0; i < function; i++) {
+        place += m->breaks[i];
+    }
+    return varied_row(v, column, v->matrices + OF_FUNCTIONS, v->segment * m->switches + function, m->size, x) +
+           varied_row(v, column, v->matrices + OF_BREAKS, place, m->size, x);
+}
+
+/* ---- events ---- */
+
+/* f- stands in the column of time. */
+static void leave_field(const searched *m, instant *at)
+{
+    pl_variation *v = at->v;
+    const real *A = matrix_now(m, at);
+    int i;
+    pl_multiply(m->size, m->size, A, at->x, column_of_time(m, v));
+    for (i = 0; i < m->size; i++) {
+        v->noise[i] = sizes(m->size, A + (ptrdiff_t)i * m->size, at->x);
+    }
+    v->pending = 1;
+}
+
+/* row . x comes to its limit: dg has the derivatives of what is left to it. */
+static void meet(const searched *m, instant *at, const real *row, int function)
+{
+    pl_variation *v = at->v;
+    const int n = m->size;
+    int p, i;
+    v->rate = dot(n, row, column_of_time(m, v));
+    v->time = at->time;
+    v->function = function;
+    v->before = at->c->region;
+    v->size = 0;
+    for (i = 0; i < n; i++) {
+        v->size += magnitude(row[i]) * v->scale[i];
+    }
+    pl_multiply(n, n, matrix_now(m, at), column_of_time(m, v), v->work);
+    v->bend = dot(n, row, v->work);
+    for (p = 0; p < v->columns; p++) {
+        v->dg[p] += dot(n, row, v->S + (ptrdiff_t)p * n);
+        v->when[p] = v->rate > 0 || v->rate < 0 ? pl_saltation_time(v->dg[p], v->rate) : 0;
+    }
+}
+
+/* q = R_x f- + R_t - f+; what rounding may have made of it is 0.  Whether there is any */
+static int field_jumps(const searched *m, const instant *at)
+{
+    const pl_variation *v = at->v;
+    const real *A = matrix_now(m, at);
+    real *q = column_of_time(m, v);
+    int i, any = 0;
+    for (i = 0; i < m->size; i++) {
+        const real *row = A + (ptrdiff_t)i * m->size, behind = dot(m->size, row, at->x);
+        const real noise = noise_of(v->noise[i] + sizes(m->size, row, at->x));
+        q[i] -= behind;
+        if (magnitude(q[i]) <= noise) {
+            q[i] = 0;
+        }
+        any = any || magnitude(q[i]) > 0;
+    }
+    return any;
+}
+
+/* Events at one instant, or where a step, a segment of time or a sample ends: the derivative is that of one side. */
+static void look_at_order(const searched *m, pl_variation *v, int jumps)
+{
+    const real none = 64 * REAL_EPSILON * m->h;
+    const int together = v->last >= 0 && v->last != v->function && v->time - v->last_time <= none;
+    if (v->function >= 0 && jumps && (v->time <= none || v->time >= m->h - none)) {
+        v->status |= PL_D_ONE_SIDED;
+    }
+    if (together && v->function >= 0 && (jumps || v->jumped)) {
+        v->status |= PL_D_ONE_SIDED;
+    }
+    v->last = v->function;
+    v->last_time = v->time;
+    v->jumped = jumps;
+}
+
+/* Behind an event, in the region where x goes on: S from that at the event's time to that at fixed time */
+static void end_event(const searched *m, instant *at)
+{
+    pl_variation *v = at->v;
+    int p, done, jumps = 0;
+    if (v == NULL || !v->pending) {
+        return;
+    }
+    done = v->sticks && projects(m, at);
+    if (!done && field_jumps(m, at)) {
+        jumps = 1;
+        for (p = 0; p < v->columns; p++) {
+            pl_saltation_pass(m->size, column_of_time(m, v), v->when[p], v->S + (ptrdiff_t)p * m->size);
+        }
+        if (v->function >= 0 && (!(v->rate > 0 || v->rate < 0) || pl_saltation_grazes(v->size, v->rate, v->bend))) {
+            v->status |= PL_D_GRAZING;
+        }
+    }
+    look_at_order(m, v, done || jumps);
+    v->pending = v->sticks = 0;
+    v->function = -1;
+    vary_held(m, at);
+}
+
+/* ---- between events ---- */
+
+/* S by tau, x beginning at z, whose polynomial over it is in `series` */
+static void vary_part(const searched *m, const instant *at, real tau, const real *series)
+{
+    const pl_variation *v = at->v;
+    const int n = m->size, *first = v->first + at->c->matrix;
+    const real *A = matrix_now(m, at);
+    real *term = v->work, *next = term + n;
+    int p, k, i, j;
+    for (p = 0; p < v->columns; p++, first += v->matrices + OF_ALL) {
+        real *S = v->S + (ptrdiff_t)p * n;
+        for (i = 0; i < n; i++) {
+            term[i] = S[i];
+        }
+        for (k = 0; k < v->degree; k++) {
+            pl_multiply(n, n, A, term, next);
+            for (j = first[0]; j < first[1]; j++) {
+                next[v->entry[j].row] += v->entry[j].value * series[k * n + v->entry[j].column];
+            }
+            for (i = 0; i < n; i++) {
+                term[i] = next[i] * (tau / (real)(k + 1));
+                S[i] += term[i];
+            }
+        }
+    }
+}
+
+/* S over a piece of this length from x on, before x is moved */
+static void vary_piece(const searched *m, instant *at, real length)
+{
+    pl_variation *v = at->v;
+    const int n = m->size;
+    real *series, *z, shortest;
+    int part, parts = 1, i;
+    if (v == NULL) {
+        return;
+    }
+    end_event(m, at);
+    series = v->work + 2 * n;
+    z = series + (v->degree + 1) * n;
+    shortest = m->h / (real)((uint32_t)1 << m->halvings[at->c->matrix]);
+    while ((real)parts * shortest < length * (1 - REST)) {
+        parts *= 2;
+    }
+    for (i = 0; i < n; i++) {
+        z[i] = at->x[i];
+        v->scale[i] = larger(v->scale[i], magnitude(z[i]));
+    }
+    for (part = 0; part < parts && length > 0; part++) {
+        expand(n, v->degree, matrix_now(m, at), length / (real)parts, z, series);
+        vary_part(m, at, length / (real)parts, series);
+        sum_up(n, v->degree, series, 1, z);
+    }
+}
+
 #endif
 
 /* One switch after the other, and where a region has it:

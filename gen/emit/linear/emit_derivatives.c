@@ -8,7 +8,7 @@
 #include "emit/regions/regions.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
-#include "step/regions/variation.h"
+#include "step/regions/regions.h"
 #include "step/linear/forms.h"
 
 #include <string.h>

@@ -3,7 +3,6 @@
 #include "inner.h"
 #include "emit/steps.h"
 #include "model/tunable/elsewhere.h"
-#include "step/regions/variation.h"
 
 /* ---- what acts on the states ---- */
 

@@ -4,7 +4,6 @@
 #include "emit/steps.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
-#include "step/regions/variation.h"
 
 int functions_of(const struct emitter *e)
 {

@@ -3,7 +3,6 @@
  * little smaller, and the numbers of both are exact: half of their difference is the derivative but for 2^-160 of it,
  * and rounded once. Where one of the two is no model, as beyond a restitution of 1, the model itself is in its place,
  * and that is 2^-80. */
-#include "variation.h"
 #include "guards.h"
 #include "inner.h"
 #include "model/contacts/contacts.h"
