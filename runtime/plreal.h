@@ -9,8 +9,7 @@
  * degree and halvings for 0 <= tau <= h: |pole| h / 2^halvings <= 1 for every pole, those of loads included, and a
  * degree of 15 + d, in floats 8 + d, where d is the longest path from one entry to another along nonzero entries of A.
  * The error of x_i is then below 8 DBL_EPSILON sum_j most_ij |x_j|, most_ij being the largest |Phi_ij| of e^{A tau} on
- * 0 .. h (measured for |pole| h up to 8: 7.4 in 200 damped and undamped chains, half of them below 1.7; in floats 6.7
- * in 11). */
+ * 0 .. h (measured for |pole| h up to 8: 7.4 in 200 chains, half of them below 1.7; in floats 6.7 in 11). */
 typedef struct pl_series {
     int size;        /* entries of x */
     int states;      /* the first `states` entries are the model's states, the others load states and inputs */
@@ -25,15 +24,12 @@ void pl_series_advance(const pl_series *p, PL_REAL tau, PL_REAL *x, PL_REAL *wor
 /* ---- power.c: many steps at once ------------------------------------------------------------------------- */
 
 /* A double-double number hi + lo, |lo| <= half a unit in the last place of hi (106 bits, in floats 48). */
-typedef struct pl_two {
-    PL_REAL hi, lo;
-} pl_two;
+typedef struct pl_two { PL_REAL hi, lo; } pl_two;
 
 /* Replaces x, n entries, by P^k x, by binary powering in double-double arithmetic; k = 0 leaves it unchanged.  The
  * relative error is about k 2^-104, in floats k 2^-46, where a term below 2^-102 loses bits of its low part to
  * underflow.  P, n x n, is overwritten; W and w are work of n x n and n entries.  A result beyond the range of double
- * is an infinity with lo = 0; finite arguments give no NaN.  Once an entry of a power of P has overflowed, entries of x
- * that depend on it are infinite, with any sign. */
+ * is an infinity with lo = 0, of any sign where a power of P has overflowed; finite arguments give no NaN. */
 void pl_power_apply(int n, pl_two *P, pl_two *W, pl_two *x, pl_two *w, uint64_t k);
 
 /* ---- compensated sums, for --accuracy compensated -------------------------------------------------------------- */

@@ -23,32 +23,12 @@ from typing import Any
 import numpy as np
 
 from . import _code
-from ._code import VERSION, Code, Compiler, Error, Params, Units, Value
+from ._code import REFUSED, STATUS, VERSION, Code, Compiler, Error, Params, RunError, Units, Value
 from ._linear import Derivatives, Linear, StateSpace, StateSpaces
 
 __all__ = ['Model', 'Error', 'RunError', 'StateSpace', 'VERSION']
-STATUS = ((2, 'the step has met more crossings, or needed a longer search for them, than its bound'),
-          (1, 'the step has left the finite numbers'),
-          (4, 'the step needed more substeps than its bound'),
-          (8, 'the last terms of the step are above the tolerance'),
-          (16, 'what is to stick and what is to slip at an event had no answer'),
-          (32, 'a state has left the range that the spec gives it'),
-          (64, 'the step has ended beyond a stop'),
-          (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
-REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
-           4: 'with these values the mass matrix has no inverse',
-           32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
-               'within 0 and 1, a gap or a force of friction below 0, breakpoints in another order'}
 BLOCK = 1 << 20         # steps between two looks at Ctrl-C
 LANES = 64              # instances of a batch that a thread takes at a time
-
-
-class RunError(Error):
-    """A step went wrong. rows: the outputs before it; t: their times; status: the bits of NAME_status."""
-
-    def __init__(self, text: str, rows: np.ndarray, t: np.ndarray, status: int) -> None:
-        super().__init__(text)
-        self.rows, self.t, self.status = rows, t, status
 
 
 class Model(Linear, Derivatives):

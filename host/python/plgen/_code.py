@@ -20,10 +20,30 @@ import numpy as np
 
 Value = Union[float, int, str, Fraction]
 VERSION = 2             # PL_MODEL_VERSION: the shape of the descriptor below
+STATUS = ((2, 'the step has met more crossings, or needed a longer search for them, than its bound'),
+          (1, 'the step has left the finite numbers'),
+          (4, 'the step needed more substeps than its bound'),
+          (8, 'the last terms of the step are above the tolerance'),
+          (16, 'what is to stick and what is to slip at an event had no answer'),
+          (32, 'a state has left the range that the spec gives it'),
+          (64, 'the step has ended beyond a stop'),
+          (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
+REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
+           4: 'with these values the mass matrix has no inverse',
+           32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
+               'within 0 and 1, a gap or a force of friction below 0, breakpoints in another order'}
 
 
 class Error(Exception):
     """What plgen or the compiler says about a model, or why the model cannot do what it is asked for."""
+
+
+class RunError(Error):
+    """A step went wrong. rows: the outputs before it; t: their times; status: the bits of NAME_status."""
+
+    def __init__(self, text: str, rows: np.ndarray, t: np.ndarray, status: int) -> None:
+        super().__init__(text)
+        self.rows, self.t, self.status = rows, t, status
 
 
 def unknown(what: str, name: str, known: Iterable[str]) -> str:
