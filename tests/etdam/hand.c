@@ -38,6 +38,7 @@ typedef struct bent {
 static void bent_modes_of(int which, const real q[], real mode[]) { (void)which, mode[0] = q[0]; }
 static void bent_of_modes(int which, const real mode[], real q[]) { (void)which, q[0] = mode[0]; }
 static void bent_pass_time(bent *s, const real u[]) { (void)u, s->k++; }
+static void bent_look(bent *s) { (void)s; }
 
 static void bent_mode_forces(const bent *s, int which, const real f[], const real eta[], const real rate[],
                            real force[])
@@ -138,6 +139,7 @@ static const double turned_by = 0.3;
 static real plane_time(const plane *s) { return (real)s->k * plane_H; }
 static real plane_until(const plane *s, int change) { return (real)plane_change[change].hi - plane_time(s); }
 static void plane_pass_time(plane *s, const real u[]) { (void)u, s->k++; }
+static void plane_look(plane *s) { (void)s; }
 
 static void plane_modes_of(int which, const real q[], real mode[])
 {
