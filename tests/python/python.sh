@@ -72,7 +72,7 @@ sed -n 's/.*fprintf(stderr, " \(\(the\|what\|a\) [^%"]*\).*/\1/p' "$root/runtime
 : >log
 [ "$(wc -l <words)" -eq "$(grep -c 'if (status & PL_' "$root/runtime/host/plmain.c")" ] || cp words log
 while read -r words; do
-	for file in python/plgen/__init__.py octave/plgen_model.m; do
+	for file in python/plgen/_code.py octave/plgen_model.m; do
 		grep -q "$words" "$root/host/$file" || echo "$file: no '$words'" >>log
 	done
 done <words
