@@ -444,10 +444,15 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	return ramps;
 }
 
+static const char *script_text(void)
+{
+	return format("%s%s", runtime_text("engine.js"), runtime_text("page.js"));
+}
+
 static void put_policy(FILE *to)
 {
 	fputs("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src ", to);
-	put_sha256(to, runtime_text("page.js"));
+	put_sha256(to, script_text());
 	fputs(" 'wasm-unsafe-eval'; style-src ", to);
 	put_sha256(to, runtime_text("page.css"));
 	fputs("; base-uri 'none'; form-action 'none'\"/>\n", to);
@@ -481,7 +486,7 @@ static bool print_live_page(FILE *to, const struct step *step, const char *code,
 	const unsigned char *shorter = deflated((unsigned char *)wasm, length, &length);
 	fputs("</script>\n<script type=\"text/plain\" id=\"wasm\">", to);
 	put_base64(to, shorter, length);
-	fprintf(to, "</script>\n<script>%s</script>\n</body>\n</html>\n", runtime_text("page.js"));
+	fprintf(to, "</script>\n<script>%s</script>\n</body>\n</html>\n", script_text());
 	return true;
 }
 
