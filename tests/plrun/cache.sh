@@ -6,7 +6,8 @@
 . "${0%/*}/begin.sh"
 # The runtime without what is most of its code, which none of these models needs
 cp -r "$root/runtime" runtime
-for name in guards guards_compensated guards_d events crossings crossings_compensated crossings_d region event_split peak dense; do
+for name in guards guards_compensated guards_d events crossings crossings_compensated crossings_d region event_split \
+	peak dense; do
 	rm runtime/$name.c runtime/${name}f.c
 done
 PLGEN_RUNTIME=$work/runtime
