@@ -72,14 +72,14 @@ static pl_two negative(pl_two a)
 static pl_turn turn_of(double x)
 {
     static const uint64_t turns[] = { /* 1/(2 pi) 2^1280 */
-        0x28BE60DB9391054A, 0x7F09D5F47D4D3770, 0x36D8A5664F10E410, 0x7F9458EAF7AEF158, 0x6DC91B8E909374B8,
-        0x01924BBA82746487, 0x3F877AC72C4A69CF, 0xBA208D7D4BAED121, 0x3A671C09AD17DF90, 0x4E64758E60D4CE7D,
-        0x272117E2EF7E4A0E, 0xC7FE25FFF7816603, 0xFBCBC462D6829B47, 0xDB4D9FB3C9F2C26D, 0xD3D18FD9A797FA8B,
-        0x5D49EEB1FAF97C5E, 0xCF41CE7DE294A4BA, 0x9AFED7EC47E35742, 0x1580CC11BF1EDAEA, 0xFC33EF0826BD0D87
+        0x28BE60DB9391054Au, 0x7F09D5F47D4D3770u, 0x36D8A5664F10E410u, 0x7F9458EAF7AEF158u, 0x6DC91B8E909374B8u,
+        0x01924BBA82746487u, 0x3F877AC72C4A69CFu, 0xBA208D7D4BAED121u, 0x3A671C09AD17DF90u, 0x4E64758E60D4CE7Du,
+        0x272117E2EF7E4A0Eu, 0xC7FE25FFF7816603u, 0xFBCBC462D6829B47u, 0xDB4D9FB3C9F2C26Du, 0xD3D18FD9A797FA8Bu,
+        0x5D49EEB1FAF97C5Eu, 0xCF41CE7DE294A4BAu, 0x9AFED7EC47E35742u, 0x1580CC11BF1EDAEAu, 0xFC33EF0826BD0D87u
     };
     pl_rate rate;
     int k, i, bit;
-    split(size_of(x), &k);
+    (void)split(size_of(x), &k);
     k = k > 52 ? k - 52 : 0;
     bit = k % 64;
     for (i = 0; i < 3; i++) {
@@ -129,7 +129,7 @@ double pl_tan(double x)
 /* x / ln 2 */
 static pl_growth exponent_of(double x)
 {
-    static const pl_rate per_e = {{0xB8AA3B295C17F0BB, 0xBE87FED0691D3E88, 0xEB577AA8DD695A59}, 191};
+    static const pl_rate per_e = {{0xB8AA3B295C17F0BBu, 0xBE87FED0691D3E88u, 0xEB577AA8DD695A59u}, 191};
     return pl_growth_at(&per_e, 0, x);
 }
 
@@ -322,7 +322,7 @@ static double angle(pl_two y, pl_two x)
     const int steep = a.hi > b.hi;
     double unit, half;
     int k;
-    split(steep ? a.hi : b.hi, &k);
+    (void)split(steep ? a.hi : b.hi, &k);
     half = power_of_2(-(k / 2));
     unit = power_of_2(k / 2 - k);
     a = two(a.hi * half * unit, a.lo * half * unit);
