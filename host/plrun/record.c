@@ -266,12 +266,13 @@ struct record *record_read(const struct options *o, const char *path, const stru
 
 /* ---- samples ---- */
 
-/* Times are written with few digits: a millionth of a step is nothing. */
+/* Times are written with few digits: a millionth of a step is nothing, and neither is what a step loses that is a
+ * float, up to a hundredth of it. */
 bool record_on_grid(const struct record *r, double h)
 {
 	for (size_t k = 0; r->time && k < r->rows; k++) {
-		double off = r->time[k] - (double)k * h;
-		if (!(off < 1e-6 * h && off > -1e-6 * h))
+		const double off = fabs(r->time[k] - (double)k * h);
+		if (!(off < fmin(1e-6 * h + 6e-8 * r->time[k], 0.01 * h)))
 			return false;
 	}
 	return true;

@@ -71,6 +71,14 @@ same plain_out.csv out.csv 'the spec from standard input'
 run two.spec --input plain.csv -o file.csv >nothing && [ ! -s nothing ]
 same plain_out.csv file.csv 'into a file'
 
+# A step of 0.01 s as a float is off by 2e-8 of itself: times in the record are still those of steps.
+(echo t,road,push; tr ' ' , <numbers) >timed.csv
+run two.spec --real float --input plain.csv >plain_float.csv
+run two.spec --real float --input timed.csv >out.csv
+! grep resampled said >>log
+result $? 'float: times of steps are no reason to resample'
+same plain_float.csv out.csv 'float: with times and without'
+
 # Ramps between rows 0.04 s apart are the record with three more rows in each gap; only the rounding of these differs.
 awk 'NR % 4 == 1' numbers >coarse
 (echo t,road,push; awk '{ print $1 "," $2 "," $3 }' coarse) >coarse.csv
