@@ -544,14 +544,14 @@ static bool print_many(struct work *w, void (*print)(void *))
 
 /* ---- the whole ---- */
 
-/* What looks at a model without what is around it */
+/* A describing function is of the model alone, without the samples that delays keep. */
 static bool goes_with_delays(const struct work *w)
 {
 	const struct facts facts = facts_of_model(w->model);
-	const char *against = objection_to(CAN_VIEWS, &facts, w->model).why;
+	const char *against = objection_to(CAN_AMPLITUDE, &facts, w->model).why;
 	if (!w->options.amplitude || !against)
 		return true;
-	say_error(w->model->delays->delay->symbol->at, NULL, "%s%s", words_before(CAN_VIEWS), against);
+	say_error(w->model->delays->delay->symbol->at, NULL, "%s%s", words_before(CAN_AMPLITUDE), against);
 	return false;
 }
 
