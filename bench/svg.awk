@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel is the unit
-# and points within two of a line that goes on are left out; what lines, marks, areas and texts have in common is
-# said once; marks that are not drawn are not defined, and a mark at many places is a marker of one path. Of what lies
-# between two curves areas come first, then lines, marks and texts; what is none of these stays as it was, ten times as
-# large.
+# awk [-v ids=n] -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel
+# is the unit and points within two of a line that goes on are left out; what lines, marks, areas and texts have in
+# common is said once; marks that are not drawn are not defined, and a mark at many places is a marker of one path. Of
+# what lies between two curves areas come first, then lines and marks; texts come last of all; what is none of these
+# stays as it was, ten times as large. ids: what ids begin with, where another picture stands in the same page.
 function attribute(name,    value) {
 	if (!match(tag, "[ \n\t]" name " *= *('[^']*'|\"[^\"]*\")")) return ""
 	value = substr(tag, RSTART, RLENGTH)
@@ -87,7 +87,7 @@ function area_of(path, points,    word, words, i, at) {
 
 # ---- what stands between two curves ----
 
-# held[place], place: kind, key; of kind area, line, mark or text
+# held[place], place: kind, key; of kind area, line or mark
 function hold(place, text,    part) {
 	if (!(place in held)) {
 		split(place, part, SUBSEP)
@@ -96,22 +96,32 @@ function hold(place, text,    part) {
 	held[place] = held[place] text
 }
 function flush(    kinds, kind, k, i, key, text) {
-	kinds = split("area line mark text", kind, " ")
+	kinds = split("area line mark", kind, " ")
 	for (k = 1; k <= kinds; k++)
 		for (i = 1; i <= keys[kind[k]]; i++) {
 			key = key_of[kind[k], i]; text = held[kind[k], key]
-			if (text == "") continue
-			if (kind[k] == "text") body = body "<g" key ">\n" text "</g>\n"
-			else body = body "<path" key " d=\"" text "\"/>\n"
+			if (text != "") body = body "<path" key " d=\"" text "\"/>\n"
 		}
 	split("", held); split("", keys); split("", key_of); split("", x_of); split("", y_of)
 }
+function hold_text(key, text) {
+	if (!(key in texts)) { key_of_text[++text_keys] = key; texts[key] = "" }
+	texts[key] = texts[key] text
+}
+function all_texts(    i, key, text) {
+	for (i = 1; i <= text_keys; i++) {
+		key = key_of_text[i]
+		text = text "<g" key ">\n" texts[key] "</g>\n"
+	}
+	return text
+}
+function short_id(text) { gsub(/gpPt/, ids "p", text); return text }
 function mark(    where, at, size, key, n) {
 	where = attribute("transform")
 	size = where; sub(/.*scale\(/, "", size); sub(/\).*/, "", size)
 	sub(/.*translate\(/, "", where); sub(/\).*/, "", where)
 	split(where, at, ",")
-	key = substr(attribute("xlink:href"), 2) SUBSEP size SUBSEP colour(attribute("color"))
+	key = short_id(substr(attribute("xlink:href"), 2)) SUBSEP size SUBSEP colour(attribute("color"))
 	if (!(key in marker)) { marker[key] = ++markers; marker_key[markers] = key }
 	n = ++marks[marker[key]]
 	mark_x[marker[key], n] = tenths(at[1]); mark_y[marker[key], n] = tenths(at[2])
@@ -120,7 +130,7 @@ function hold_marks(    m, i) {
 	for (m = 1; m <= markers; m++) {
 		if (!marks[m]) continue
 		for (i = 1; i <= marks[m]; i++) { X[i] = mark_x[m, i]; Y[i] = mark_y[m, i] }
-		polyline("mark" SUBSEP " style=\"marker:url(#m" m ")\"", marks[m], 0, 1)
+		polyline("mark" SUBSEP " style=\"marker:url(#" ids "m" m ")\"", marks[m], 0, 1)
 		marks[m] = 0
 	}
 }
@@ -166,7 +176,7 @@ function end_of_text() {
 	gsub(/<tspan[^>]*><\/tspan>$/, "", content)
 	content = with_exponent(content)
 	gsub(/\n/, " ", content); gsub(/  /, " \\&#160;", content)
-	if (content != "") hold("text" SUBSEP key, "<text" place ">" content "</text>\n")
+	if (content != "") hold_text(key, "<text" place ">" content "</text>\n")
 }
 
 # ---- tag by tag ----
@@ -234,7 +244,10 @@ name == "svg" {
 name == "defs" && !defined { defining = 1; next }
 name == "/defs" && defining { defining = 0; defined = 1; next }
 defining {
-	if (tag ~ /id='gp/) { gsub(/[ \n\t]+/, " ", tag); shape[attribute("id")] = "<" tag ">" }
+	if (tag ~ /id='gp/) {
+		gsub(/[ \n\t]+/, " ", tag)
+		shape[short_id(attribute("id"))] = "<" short_id(tag) ">"
+	}
 	next
 }
 name == "rect" && ground == "" {
@@ -289,12 +302,13 @@ END {
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker" said("id", "m" m) "><use" \
+			print "<marker" said("id", ids "m" m) "><use" \
 				said("href", "#" part[1]) said("transform", "scale(" part[2] ")") \
 				said("color", part[3]) "/></marker>"
 		}
 		print "</defs>"
 	}
 	print ground
-	printf "<g fill=\"none\" stroke-width=\"10\"%s>\n%s</g>\n</svg>\n", said("font-family", family), body
+	printf "<g fill=\"none\" stroke-width=\"10\"%s>\n%s%s</g>\n</svg>\n", said("font-family", family), body, \
+		all_texts()
 }

@@ -28,6 +28,16 @@ function read_head(line, column,    n, i) {
 # Of a section of tables.txt or findings.txt: what its row has there; `low` and `high` of all x so far
 function of(name) { return f[column[name]] }
 function span(x) { if (low == "" || x < low) low = x; if (high == "" || x > high) high = x }
+# Of a list between blanks: what stands at place k, and the place of what is nearest to x
+function in_list(list, k,    item) { split(list, item, " "); return item[k] }
+function nearest(list, x,    n, i, item, at, d, least) {
+	n = split(list, item, " ")
+	for (i = 1; i <= n; i++) {
+		d = item[i] > x ? item[i] - x : x - item[i]
+		if (!at || d < least) { at = i; least = d }
+	}
+	return at
+}
 function quoted(text) { return text ~ /[,"]/ ? "\"" text "\"" : text }
 function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); gsub(/>/, "\\&gt;", text); return text }
 # A row of letters as runs, 12c for twelve c, and back

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # draw.sh FOLDER [--png]: pictures and pages from the tables in FOLDER, where nothing is measured: what pictures and
 # pages need of the large tables that programs wrote (NAME_raw.csv, which doc/charts does not keep), what follows from
-# the tables (matrix.csv, break_even.csv, precision_check.csv), every picture whose tables are there, and the pages. Run
-# at the top of the source tree.
+# the tables (matrix.csv, break_even_raw.csv, precision_check.csv), every picture whose tables are there, and the pages.
+# Run at the top of the source tree.
 set -e
 folder=$1 png=$2
 charts=bench/charts
@@ -39,8 +39,16 @@ derive operator_map.csv operator_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -
 derive pl_map.csv pl_map_raw.csv classes -v bounds='-0.9 -0.5 -0.1 -0.001 0 1e-6 0.001 0.1 1 10'
 derive plmap.csv plmap_raw.csv ratios
 derive matrix.csv precision.csv matrix
-derive break_even.csv 'generation.csv precision.csv' after
+derive break_even_raw.csv 'generation.csv precision.csv' after
 derive precision_check.csv precision_raw.csv within
+derive frame_history.csv frame_history.csv fold -v by=method -v lists=t_s,roof_mm
+derive integrators.csv integrators.csv fold -v by=method \
+	-v lists=h_over_T,spectral_radius,period_elongation_percent,amplitude_decay_percent_per_period
+derive operator_boundary.csv operator_boundary.csv fold -v by=method -v lists=wh,across
+derive papers_beam_tip.csv papers_beam_tip.csv fold -v by=h_s,operator -v lists=t_s,largest_tip_in_last_second_m
+derive quality.csv quality.csv fold -v by=method -v lists=h_over_T,period_elongation_percent,\
+amplitude_decay_percent_per_period,algorithmic_damping_ratio,elongation_size,decay_size
+derive stability_boundary.csv stability_boundary.csv fold -v by=method,branch -v lists=wh,zeta
 for name in energy integrators needs operator_boundary papers_beam_tip quality; do
 	derive $name.csv $name.csv digits -v to=4
 done
@@ -52,7 +60,9 @@ sh $charts/picture.sh --list "$folder" | FOLDER=$folder WORK=$work xargs -P "${J
 
 # Text and axes turn light where the reader's style is dark; areas keep their colours
 for picture in "$work"/pictures/*.svg; do
-	awk -f bench/svg.awk "$picture" >"$work/small" && awk -f $charts/dark.awk "$work/small" >"$work/picture"
+	case $picture in *_narrow.svg) ids=n ;; *) ids= ;; esac
+	awk -v ids=$ids -f bench/svg.awk "$picture" >"$work/small" &&
+		awk -v css=$charts/style.css -f $charts/dark.awk "$work/small" >"$work/picture"
 	mv "$work/picture" "$folder/$(basename "$picture")"
 done
 [ -z "$png" ] || cp "$work"/pictures/*.png "$folder"

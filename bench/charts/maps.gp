@@ -3,7 +3,7 @@
 
 === stability_map: stability_map.csv stability_boundary.csv
 # A panel for each method of the table
-ends = folder.'/stability_boundary.csv'
+ends = made('unfold', '-v lists=wh,zeta', folder.'/stability_boundary.csv')
 methods = system("awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' '".csv."'")
 count = lines_of(methods)
 named(k) = system(sprintf("awk -F, 'NR > 1 && !seen[$1]++ && ++n == %d { print $1; exit }' '%s'", k, csv))
@@ -49,7 +49,7 @@ do for [form=1:forms] {
 
 === operator_map: operator_map.csv operator_boundary.csv
 size = '900,690'
-ends = folder.'/operator_boundary.csv'
+ends = made('unfold', '-v lists=wh,across', folder.'/operator_boundary.csv')
 unset logscale
 set xrange [-2:1.5]; set yrange [-1:1]
 do for [form=1:forms] {
@@ -87,7 +87,7 @@ do for [form=1:forms] {
 # Where pl grows by kappa h/4 a second the amplitude grows by e^{(pi/2) (k2/(k1 + k2)) w h} a period: dashed, at the
 # bounds of the classes
 size = '900,600'
-ends = folder.'/operator_boundary.csv'
+ends = made('unfold', '-v lists=wh,across', folder.'/operator_boundary.csv')
 predicted(x, percent) = log(1 + percent/100.0)*2/pi/10**x         # k2/(k1 + k2)
 coupling(x, percent) = predicted(x, percent) < 1 ? log10(predicted(x, percent)/(1 - predicted(x, percent))) : NaN
 unset logscale; unset grid

@@ -3,12 +3,14 @@
 # page.sh FOLDER: FOLDER/index.html, a page for each model and one for each topic, from the pictures and tables there.
 # Run at the top of the source tree. A picture stands beside its caption (=== NAME in captions.txt, or that of the
 # longest beginning of NAME that has one). What is not there is left out; what lies in FOLDER and is named nowhere here
-# comes on the page more.html, so that nothing is lost.
+# comes on the page more.html, so that nothing is lost. The picture of a model, precision_MODEL.svg and for narrow
+# screens precision_MODEL_narrow.svg, moves into its page; where it is not there, the page keeps the one it has.
 set -e
 folder=$1
 charts=bench/charts
-shown=$(mktemp)
-trap 'rm -f "$shown"' EXIT
+work=$(mktemp -d)
+shown=$work/shown
+trap 'rm -rf "$work"' EXIT
 stories='headline_integrators headline_equal_step energy_double hard less needs'
 # The topics: NAME|short title, for links|title|what is shown, as `show` reads it
 topics='stability|Stability and failures|Stability, quality, and where methods fail|hard hard_table +hard.csv
@@ -26,7 +28,7 @@ convergence|Convergence|Convergence, and where frequencies meet|convergence_scs@
  convergence_sdcs@convergence.csv:system=sdcs convergence_sdcsf@convergence.csv:system=sdcsf
  convergence_orders.csv headline_confluence headline_confluence.csv
 limits|Generating, machine, clocks|What generating costs, how near to the machine, how times agree|break_even
- break_even.csv =generation limits limits.csv How_times_agree=precision_check
+ =generation limits limits.csv How_times_agree=precision_check
 more|More|More|'
 
 there() {
@@ -60,13 +62,41 @@ caption() {
 	[ -z "$text" ] || printf '<p>%s</p>\n' "$text"
 }
 
-# picture NAME: nothing where there is none; for whom it is read aloud, what it found
-picture() {
-	there "$1.svg" || return 0
-	echo "$1.svg" >>"$shown"
+# heard NAME: its caption as text, and for whom it is read aloud what it found
+heard() {
 	text=$(text_of "$1")
 	found=$(sh $charts/finding.sh "$1" "$folder" | escaped)
 	[ -n "$found" ] || found=$(printf '%s' "$text" | tr '\n' ' ' | sed 's/\. .*/./')
+}
+
+# inline FILE CLASS PAGE: the picture in FILE, without the styles that style.css has; or that of the page
+inline() {
+	if there "$1"; then
+		sed "1s/^<svg \(viewBox=\"[^\"]*\"\).*/<svg class=$2 \1>/
+			/^<style>.*<\/style>$/d; /^<style>/,/<\/style>/d
+			s/=\"\([^\" ]*\)\"\([ >]\)/=\1\2/g" "$folder/$1"
+		rm "$folder/$1"
+	elif [ -f "$work/$3" ]; then
+		sed -n "/<svg class=$2 /,/^<\/svg>/p" "$work/$3"
+	fi
+}
+
+# picture_of MODEL: within its page
+picture_of() {
+	inline "precision_$1.svg" broad "model_$1.html" >"$work/broad"
+	inline "precision_$1_narrow.svg" narrow "model_$1.html" >"$work/narrow"
+	[ -s "$work/broad" ] || return 0
+	heard "precision_$1"
+	printf '<figure id="precision_%s"><div class="figure fits" role="img" aria-label="%s">\n' "$1" "$found"
+	cat "$work/broad" "$work/narrow"
+	printf '</div>\n<figcaption>%s</figcaption></figure>\n' "$text"
+}
+
+# picture NAME: nothing where there is none
+picture() {
+	there "$1.svg" || return 0
+	echo "$1.svg" >>"$shown"
+	heard "$1"
 	size=$(sed -n '/viewBox/{s/.*="0 0 \([0-9]*\)0 \([0-9]*\)0".*/width="\1" height="\2"/p;q;}' "$folder/$1.svg")
 	fits=
 	if there "${1}_narrow.svg"; then
@@ -175,7 +205,7 @@ model() {
 	printf '<p>%s The model: <code>%s</code>; %s s, an output every %s s.</p>\n' "$about" "$spec" \
 		"$(of_model "$1" history_s)" "$(of_model "$1" unit_s)"
 	made grid -v only="$1" "$folder/matrix.csv"
-	picture "precision_$1"
+	picture_of "$1"
 	! there precision_methods.csv || echo '<p><a href="index.html#methods">How it was measured</a></p>'
 	for file in "$folder/$1"_*.svg; do
 		name=$(basename "$file" .svg)
@@ -231,7 +261,9 @@ index() {
 	EOT
 }
 
-rm -f "$folder"/*.html
+for page in "$folder"/*.html; do
+	[ ! -f "$page" ] || mv "$page" "$work"
+done
 cp $charts/style.css "$folder"
 names=$(echo "$topics" | sed -n 's/^\([a-z]*\)|.*/\1/p')
 # Which topics have something, so that each page links to them; then the pages

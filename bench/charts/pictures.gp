@@ -107,7 +107,7 @@ plot csv index 0 using 1:2 with linespoints pt 8 lw 1.6 lc rgb '#be3028' title '
 	'' index 1 using 1:2 with linespoints pt 11 lw 1.6 lc rgb '#1f6fe0' title 'down'
 eval write
 
-=== break_even: break_even.csv narrow
+=== break_even: break_even_raw.csv narrow
 # For each model, after how many steps generating and compiling is won back
 names = first_words(csv, 1)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + 24*words(names))
@@ -373,8 +373,8 @@ set format x '%g'
 set xrange [0:50]; set xtics 10
 set yrange [1e-4:1e3]; set ytics 1e-4,10,1e3
 set bmargin 0
-rows(h, operator) = "< awk -F, '$1 == ".h." && $2 == \"".operator."\" && $4 ~ /^[0-9]/ { print $3, $4 }' OFS=, ".\
-	"'".csv."'"
+rows(h, operator) = made('unfold', '-v lists=t_s,largest_tip_in_last_second_m', csv)." | awk -F, '$1 == ".h." && ".\
+	"$2 == \"".operator."\" && $4 ~ /^[0-9]/ { print $3, $4 }' OFS=,"
 # soft operators: open marks, dashed; from that of the true speed on: filled marks, unbroken
 marks = '4 6 8 12 5 7 9'
 colours = '#be3028 #c48600 #be3028 #c48600 #1f6fe0 #6a6f78 #1f6fe0'
