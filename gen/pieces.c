@@ -325,7 +325,7 @@ static void read_file(struct runtime *r, const char *name)
 
 /* ---- all of it ---- */
 
-/* Files of one type: growthf.c beside growth.c is of floats, guards_compensated.c beside guards.c of states in two
+/* Files of one type: envelopef.c beside envelope.c is of floats, guards_compensated.c beside guards.c of states in two
  * words, guards_d.c of states with derivatives. Not those of FMUs: they have a model inside. */
 static bool serves(const struct runtime *r, const char *name)
 {

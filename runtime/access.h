@@ -12,7 +12,7 @@
  *     PL_WHOLE                   1: outputs read PL(kept)(s, x), of PL_RELATIVE too
  *     PL_COMPENSATED, PL_CARRIES        1: of each state what rounding took is in s->low; of so many in s->carry
  *     PL_RELATIVE                1: PL(keep)(y, x) and PL(written)(s, x, y), of models with rigid-body modes; set, from
- *     PL_PHASES, PL_GROWTHS      of loads; PL_PHASE_RATE, PL(growth_rate)[]; of growths below 0 PL(falls)[] is 1
+ *     PL_PHASES, PL_ENVELOPES      of loads; PL_PHASE_RATE, PL(envelope_rate)[]; of envelopes below 0 PL(falls)[] is 1
  *     PL_LEADS, PL_PEAKS         members lead and peak; PL_BY_VALUES  1: rise too
  *     PL_REFRESHED                1: loads have a refresh: since, PL(refresh_phasors)(s)
  *     PL_SEGMENTS                of time, with PL(until)(s, change) [s]
@@ -175,7 +175,7 @@ static void PL(begin_mass)(PL_TYPE *s);
 /* What follows from t alone */
 static void PL(begin_time)(PL_TYPE *s, real t)
 {
-#if PL_PHASES > 0 || PL_GROWTHS > 0 || PL_LEADS > 0 || PL_PEAKS > 0
+#if PL_PHASES > 0 || PL_ENVELOPES > 0 || PL_LEADS > 0 || PL_PEAKS > 0
     int i;
 #endif
     s->t0 = t;
@@ -185,12 +185,12 @@ static void PL(begin_time)(PL_TYPE *s, real t)
 #endif
 #if PL_PHASES > 0
     for (i = 0; i < PL_PHASES; i++) {
-        s->phase[i] = pl_turn_add(PL(phase_start)[i], pl_turn_at(&PL_PHASE_RATE[i], t));
+        s->phase[i] = pl_phase_add(PL(phase_start)[i], pl_phase_at(&PL_PHASE_RATE[i], t));
     }
 #endif
-#if PL_GROWTHS > 0
-    for (i = 0; i < PL_GROWTHS; i++) {
-        s->growth[i] = pl_growth_at(&PL(growth_rate)[i], PL(falls)[i], t);
+#if PL_ENVELOPES > 0
+    for (i = 0; i < PL_ENVELOPES; i++) {
+        s->envelope[i] = pl_envelope_at(&PL(envelope_rate)[i], PL(falls)[i], t);
     }
 #endif
 #if PL_LEADS > 0

@@ -29,7 +29,7 @@
 #undef pl_factor
 #undef pl_factor_complex
 #undef pl_group
-#undef pl_growth_at
+#undef pl_envelope_at
 #undef pl_guards
 #undef pl_guards_advance
 #undef pl_guards_change
@@ -88,9 +88,9 @@
 #undef pl_switching_compensated_step
 #undef pl_switching_start
 #undef pl_switching_step
-#undef pl_turn
-#undef pl_turn_add
-#undef pl_turn_at
+#undef pl_phase
+#undef pl_phase_add
+#undef pl_phase_at
 #undef pl_two
 #undef pl_until
 #undef pl_guards_start_d

@@ -29,7 +29,7 @@
 #define pl_factor pl_factorf
 #define pl_factor_complex pl_factorf_complex
 #define pl_group pl_groupf
-#define pl_growth_at pl_growthf_at
+#define pl_envelope_at pl_envelopef_at
 #define pl_guards pl_guardsf
 #define pl_guards_advance pl_guardsf_advance
 #define pl_guards_change pl_guardsf_change
@@ -88,9 +88,9 @@
 #define pl_switching_compensated_step pl_switchingf_compensated_step
 #define pl_switching_start pl_switchingf_start
 #define pl_switching_step pl_switchingf_step
-#define pl_turn pl_turnf
-#define pl_turn_add pl_turnf_add
-#define pl_turn_at pl_turnf_at
+#define pl_phase pl_phasef
+#define pl_phase_add pl_phasef_add
+#define pl_phase_at pl_phasef_at
 #define pl_two pl_twof
 #define pl_until pl_untilf
 #define pl_guards_start_d pl_guardsf_start_d

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* sin, cos, exp, log and their kin with the same bits on every target: --math own.  Angles and exponents become
- * integers of turns.c and growth.c; logarithms, powers and arcs are double-double sums.  The bits are the same
+ * integers of phases.c and envelope.c; logarithms, powers and arcs are double-double sums.  The bits are the same
  * wherever products are rounded before they are added: on targets with fused multiply-adds that takes -ffp-
  * contract=off. */
 #include "two.h"
@@ -69,7 +69,7 @@ static pl_two negative(pl_two a)
 /* ---- angles ---- */
 
 /* x as a fraction of a turn: of 1/(2 pi) those 192 bits that tell; bits above them give whole turns. */
-static pl_turn turn_of(double x)
+static pl_phase turn_of(double x)
 {
     static const uint64_t turns[] = { /* 1/(2 pi) 2^1280 */
         0x28BE60DB9391054Au, 0x7F09D5F47D4D3770u, 0x36D8A5664F10E410u, 0x7F9458EAF7AEF158u, 0x6DC91B8E909374B8u,
@@ -87,7 +87,7 @@ static pl_turn turn_of(double x)
         rate.word[i] = bit ? w[0] << bit | w[1] >> (64 - bit) : w[0];
     }
     rate.exponent = 192;
-    return pl_turn_at(&rate, x * power_of_2(-k));
+    return pl_phase_at(&rate, x * power_of_2(-k));
 }
 
 /* z[0] = cos x, z[1] = sin x */
@@ -127,22 +127,22 @@ double pl_tan(double x)
 /* ---- exponentials ---- */
 
 /* x / ln 2 */
-static pl_growth exponent_of(double x)
+static pl_envelope exponent_of(double x)
 {
     static const pl_rate per_e = {{0xB8AA3B295C17F0BBu, 0xBE87FED0691D3E88u, 0xEB577AA8DD695A59u}, 191};
-    return pl_growth_at(&per_e, 0, x);
+    return pl_envelope_at(&per_e, 0, x);
 }
 
 double pl_exp(double x)
 {
-    return x != x ? x : pl_growth_value(exponent_of(x));
+    return x != x ? x : pl_envelope_value(exponent_of(x));
 }
 
 /* e^|x| / 2 */
 static double half_exponential(double x)
 {
-    const pl_growth less = {-((int64_t)1 << 48), 0};
-    return pl_growth_value(pl_growth_add(exponent_of(size_of(x)), less));
+    const pl_envelope less = {-((int64_t)1 << 48), 0};
+    return pl_envelope_value(pl_envelope_add(exponent_of(size_of(x)), less));
 }
 
 double pl_sinh(double x)
@@ -227,7 +227,7 @@ static double power_of_size(double x, double y)
 {
     const pl_two t = multiply(two(y, 0.0), logarithm(size_of(x)));
     const double low = size_of(t.hi) < 0x1p10 ? t.lo : 0.0; /* beyond that the power is 0 or infinite */
-    return pl_growth_value(pl_growth_add(exponent_of(t.hi), exponent_of(low)));
+    return pl_envelope_value(pl_envelope_add(exponent_of(t.hi), exponent_of(low)));
 }
 
 double pl_pow(double x, double y)

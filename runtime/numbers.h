@@ -71,8 +71,8 @@
 #ifndef PL_FORCED
 #define PL_FORCED 0
 #endif
-#ifndef PL_GROWTHS
-#define PL_GROWTHS 0
+#ifndef PL_ENVELOPES
+#define PL_ENVELOPES 0
 #endif
 #ifndef PL_GUARDS
 #define PL_GUARDS 0

@@ -540,7 +540,7 @@ pl_rate pl_rate_of(pl_two w);
 
 /* The lead of the phase of a sine over w t: its phase stays continuous when its frequency w is changed. */
 typedef struct pl_lead {
-    pl_turn turn;
+    pl_phase phase;
     PL_REAL angle; /* the same angle [rad], from -pi to pi */
 } pl_lead;
 

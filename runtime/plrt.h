@@ -5,8 +5,8 @@
  * caller owns all memory; no function allocates, waits or prints.  The files are independent, so the linker takes only
  * those that a model uses:
  *
- *     turns.c        phases of loads as 128-bit fractions of a cycle, their cosine and sine
- *     growth.c       exponents of growing and decaying loads as 128-bit numbers, their exponential envelopes
+ *     phases.c        phases of loads as 128-bit fractions of a cycle, their cosine and sine
+ *     envelope.c       exponents of growing and decaying loads as 128-bit numbers, their exponential envelopes
  *     series.c       x(tau) for 0 <= tau <= h: NAME_at
  *     power.c        the state after n steps in log n time: NAME_jump
  *     until.c        the time until a load changes its formula
@@ -24,8 +24,8 @@
  *     dense.c        systems of linear equations, for Newton's method of implicit schemes
  *     functions.c    sin, exp, pow and their kin with the same bits on every target: --math own
  *
- * turnsf.c, growthf.c, ... are these files for models in float, which use no double.  Their names have an f:
- * pl_turnf_at is to pl_turn_at as sinf is to sin.  Declarations that differ by the type alone are in plreal.h, under
+ * phasesf.c, envelopef.c, ... are these files for models in float, which use no double.  Their names have an f:
+ * pl_phasef_at is to pl_phase_at as sinf is to sin.  Declarations that differ by the type alone are in plreal.h, under
  * the names for double.
  *
  * Compile it with the compiler's default flags: contraction to fused multiply-adds is harmless, and flags that reorder
@@ -108,13 +108,13 @@ PL_ASSERT(sizeof(1.0) == 8, pl_refuses_fsingle_precision_constant_and_doubles_of
 #define PL_EXCESS_PRECISIONF 0
 #endif
 
-/* ---- turns.c: phases ------------------------------------------------------------------------------------- */
+/* ---- phases.c: phases ------------------------------------------------------------------------------------- */
 
 /* An angle, in units of 2^-128 turn: (hi 2^64 + lo) 2^-128 turn.  It wraps as a phase should, so adding a step's
  * angle n times is as good as multiplying it by n: off by n 2^-129 turn, 2^-99 turn after 10^9 steps. */
-typedef struct pl_turn {
+typedef struct pl_phase {
     uint64_t hi, lo;
-} pl_turn;
+} pl_phase;
 
 /* A frequency in turns per second [Hz]: (word[0] 2^128 + word[1] 2^64 + word[2]) 2^-exponent, with the top bit of
  * word[0] set, or all words 0. */
@@ -124,36 +124,36 @@ typedef struct pl_rate {
 } pl_rate;
 
 /* a + b mod 1 turn. */
-static inline pl_turn pl_turn_add(pl_turn a, pl_turn b)
+static inline pl_phase pl_phase_add(pl_phase a, pl_phase b)
 {
-    pl_turn sum;
+    pl_phase sum;
     sum.lo = a.lo + b.lo;
     sum.hi = a.hi + b.hi + (sum.lo < a.lo);
     return sum;
 }
 
 /* n a mod 1 turn, exactly. */
-pl_turn pl_turn_times(pl_turn a, uint64_t n);
+pl_phase pl_phase_times(pl_phase a, uint64_t n);
 
 /* rate t mod 1 turn, t in seconds, any sign: the product is exact, then rounded once to 2^-128 turn.  The rate itself
  * is known to 192 bits, so beyond 2^64 turns the last bits of the angle are its rounding's, and beyond 2^192
  * turns nothing of the angle is known.  An infinite t, or not a number, gives 0. */
-pl_turn pl_turn_at(const pl_rate *rate, double t);
+pl_phase pl_phase_at(const pl_rate *rate, double t);
 
 /* z[0] = cos a, z[1] = sin a.  Off by less than 0.6 units in the last place (0.576 measured over 5 10^6 angles: 2^-53.8
  * at most), small angles included; exactly 0, 1 or -1 at quarter turns; mirror images about a quarter turn
  * agree to the last bit but for sign, and no zero is negative. */
-void pl_cossin(pl_turn a, double z[2]);
+void pl_cossin(pl_phase a, double z[2]);
 
 /* What one pl_cossin costs: 19 multiplications of doubles and four products of 64-bit integers; 15 additions of
  * doubles, five conversions of integers to doubles, which take as long, and two additions of those integers. */
 enum { PL_COSSIN_MUL = 23, PL_COSSIN_ADD = 22 };
 
-/* ---- turnsf.c: phases of models in float ------------------------------------------------------------------- */
+/* ---- phasesf.c: phases of models in float ------------------------------------------------------------------- */
 
 /* An angle in units of 2^-64 turn, which wraps as a phase should.  Adding a step's angle n times is off by n 2^-65
  * turn: 2^-35 turn after 10^9 steps. */
-typedef uint64_t pl_turnf;
+typedef uint64_t pl_phasef;
 
 /* A frequency in turns per second [Hz], or another rate: (word[0] 2^64 + word[1]) 2^-exponent, with the top bit of
  * word[0] set, or both words 0. */
@@ -163,79 +163,79 @@ typedef struct pl_ratef {
 } pl_ratef;
 
 /* a + b mod 1 turn. */
-static inline pl_turnf pl_turnf_add(pl_turnf a, pl_turnf b)
+static inline pl_phasef pl_phasef_add(pl_phasef a, pl_phasef b)
 {
     return a + b;
 }
 
 /* n a mod 1 turn, exactly. */
-pl_turnf pl_turnf_times(pl_turnf a, uint64_t n);
+pl_phasef pl_phasef_times(pl_phasef a, uint64_t n);
 
 /* rate t mod 1 turn, t in seconds, any sign: the product is exact, then rounded once to 2^-64 turn.  The rate itself is
  * known to 128 bits, so beyond 2^64 turns the last bits of the angle are its rounding's, and beyond 2^128 turns nothing
  * of the angle is known.  An infinite t, or not a number, gives 0. */
-pl_turnf pl_turnf_at(const pl_ratef *rate, float t);
+pl_phasef pl_phasef_at(const pl_ratef *rate, float t);
 
 /* z[0] = cos a, z[1] = sin a.  Off by less than 0.52 units in the last place (0.515 measured over 2 10^7 angles), small
  * angles included; exactly 0, 1 or -1 at quarter turns; mirror images about a quarter turn agree to the last bit but
  * for sign, and no zero is negative. */
-void pl_cossinf(pl_turnf a, float z[2]);
+void pl_cossinf(pl_phasef a, float z[2]);
 
 /* What one pl_cossinf costs: twelve products of 32-bit integers and two multiplications of floats; ten additions of
  * integers. */
 enum { PL_COSSINF_MUL = 14, PL_COSSINF_ADD = 10 };
 
-/* ---- growth.c: exponential loads -------------------------------------------------------------------------- */
+/* ---- envelope.c: exponential loads -------------------------------------------------------------------------- */
 
 /* An exponent of 2, a t / ln 2 for e^{a t}: (hi 2^64 + lo) 2^-112, from -2^15 to just below 2^15.  What is beyond stays
  * at the end of this range, where the power has long been 0 or infinite.  Adding a step's exponent n times is as good
  * as multiplying it by n: the power is off by a factor of 1 + n 2^-113, 1 + 2^-83 after 10^9 steps. */
-typedef struct pl_growth {
+typedef struct pl_envelope {
     int64_t hi;
     uint64_t lo;
-} pl_growth;
+} pl_envelope;
 
 /* The number that has these bits in two's complement. */
-static inline int64_t pl_growth_signed(uint64_t bits)
+static inline int64_t pl_envelope_signed(uint64_t bits)
 {
     return bits >> 63 ? -(int64_t)~bits - 1 : (int64_t)bits;
 }
 
 /* a + b. */
-static inline pl_growth pl_growth_add(pl_growth a, pl_growth b)
+static inline pl_envelope pl_envelope_add(pl_envelope a, pl_envelope b)
 {
     const uint64_t x = (uint64_t)a.hi, y = (uint64_t)b.hi, lo = a.lo + b.lo, hi = x + y + (lo < a.lo);
     const int beyond = (int)((~(x ^ y) & (x ^ hi)) >> 63); /* equal signs, but not that of the sum */
-    pl_growth sum;
-    sum.hi = !beyond ? pl_growth_signed(hi) : a.hi < 0 ? INT64_MIN : INT64_MAX;
+    pl_envelope sum;
+    sum.hi = !beyond ? pl_envelope_signed(hi) : a.hi < 0 ? INT64_MIN : INT64_MAX;
     sum.lo = !beyond ? lo : a.hi < 0 ? 0 : UINT64_MAX;
     return sum;
 }
 
 /* n a. */
-pl_growth pl_growth_times(pl_growth a, uint64_t n);
+pl_envelope pl_envelope_times(pl_envelope a, uint64_t n);
 
 /* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is
  * exact, then rounded once to 2^-112.  An infinite t counts as the largest finite one, and not a number as 0. */
-pl_growth pl_growth_at(const pl_rate *rate, int negative, double t);
+pl_envelope pl_envelope_at(const pl_rate *rate, int negative, double t);
 
 /* 2^a, off by less than 0.53 units in the last place (0.526 measured over 2 10^7 arguments; 0.508 where the result is
  * subnormal); exactly 2^k at an integer k; 0 from 2^-1075 down, infinite from 2^1024 up. */
-double pl_growth_value(pl_growth a);
+double pl_envelope_value(pl_envelope a);
 
-/* What one pl_growth_value costs: 14 multiplications of doubles and two products of 64-bit integers; nine additions of
+/* What one pl_envelope_value costs: 14 multiplications of doubles, two products of 64-bit integers; nine additions of
  * doubles, a conversion of an integer to a double, which takes as long, and three additions of those integers. */
-enum { PL_GROWTH_MUL = 16, PL_GROWTH_ADD = 13 };
+enum { PL_ENVELOPE_MUL = 16, PL_ENVELOPE_ADD = 13 };
 
-/* ---- growthf.c: exponential loads of models in float -------------------------------------------------------- */
+/* ---- envelopef.c: exponential loads of models in float -------------------------------------------------------- */
 
 /* An exponent of 2, a t / ln 2 for e^{a t}, in units of 2^-48: from -2^15 to just below 2^15, where what is beyond
  * stays.  Adding a step's exponent n times is off by n 2^-49, and the power by a factor of 1 + n 2^-49: 1 + 2^-19 after
  * 10^9 steps. */
-typedef int64_t pl_growthf;
+typedef int64_t pl_envelopef;
 
 /* a + b. */
-static inline pl_growthf pl_growthf_add(pl_growthf a, pl_growthf b)
+static inline pl_envelopef pl_envelopef_add(pl_envelopef a, pl_envelopef b)
 {
     if (b > 0 && a > INT64_MAX - b) {
         return INT64_MAX;
@@ -247,18 +247,18 @@ static inline pl_growthf pl_growthf_add(pl_growthf a, pl_growthf b)
 }
 
 /* n a. */
-pl_growthf pl_growthf_times(pl_growthf a, uint64_t n);
+pl_envelopef pl_envelopef_times(pl_envelopef a, uint64_t n);
 
 /* rate t, or -rate t where `negative` is not 0; rate in powers of 2 per second, t in seconds, any sign: the product is
  * exact, then rounded once to 2^-48.  An infinite t counts as the largest finite one, and not a number as 0. */
-pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t);
+pl_envelopef pl_envelopef_at(const pl_ratef *rate, int negative, float t);
 
 /* 2^a, off by less than 0.52 units in the last place (0.513 measured over 2 10^7 arguments), subnormal results
  * included; exactly 2^k at an integer k; 0 from 2^-150 down, infinite from 2^128 up. */
-float pl_growthf_value(pl_growthf a);
+float pl_envelopef_value(pl_envelopef a);
 
-/* What one pl_growthf_value costs: seven products of 32-bit integers and nine additions of integers; no floats. */
-enum { PL_GROWTHF_MUL = 7, PL_GROWTHF_ADD = 9 };
+/* What one pl_envelopef_value costs: seven products of 32-bit integers and nine additions of integers; no floats. */
+enum { PL_ENVELOPEF_MUL = 7, PL_ENVELOPEF_ADD = 9 };
 
 /* ---- functions.c: elementary functions, for --math own ------------------------------------------------------- */
 
@@ -469,13 +469,13 @@ void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl
 /* Sets no lead: w has been the same since t = 0. */
 static inline void pl_lead_start(pl_lead *lead)
 {
-    lead->turn.hi = lead->turn.lo = 0;
+    lead->phase.hi = lead->phase.lo = 0;
     lead->angle = 0.0;
 }
 
 static inline void pl_leadf_start(pl_leadf *lead)
 {
-    lead->turn = 0;
+    lead->phase = 0;
     lead->angle = 0.0f;
 }
 

@@ -82,10 +82,10 @@ pl_rate pl_rate_of(pl_two w)
 
 /* In the top 64 bits of a turn an angle has all digits that a number of radians can show. */
 #ifdef REAL_IS_FLOAT
-#define TOP(turn) (turn)
+#define TOP(phase) (phase)
 #define RADIANS 0x1.921fb6p-62f
 #else
-#define TOP(turn) ((turn).hi)
+#define TOP(phase) ((phase).hi)
 #define RADIANS 0x1.921fb54442d18p-62
 #endif
 
@@ -94,6 +94,6 @@ void pl_lead_change(pl_lead *lead, real before, real after, real t)
     const pl_two less = two_sum(before, -after);
     const int falls = less.hi > 0;
     const pl_rate rate = pl_rate_of(falls ? less : two(-less.hi, -less.lo));
-    lead->turn = pl_turn_add(lead->turn, pl_turn_at(&rate, falls ? t : -t));
-    lead->angle = (real)(int64_t)TOP(lead->turn) * RADIANS;
+    lead->phase = pl_phase_add(lead->phase, pl_phase_at(&rate, falls ? t : -t));
+    lead->angle = (real)(int64_t)TOP(lead->phase) * RADIANS;
 }

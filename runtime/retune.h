@@ -16,7 +16,7 @@
  *     PL_OPERATIONS              so many operations
  *     PL_SOLVED                  1: these are those of the only block, too
  *     PL_OUT, PL_OUT_COLUMNS     outputs that params change; columns of the rows
- *     PL_PHASES, PL_RATES, PL_GROWTHS           of loads; 1: some have frequencies that params change
+ *     PL_PHASES, PL_RATES, PL_ENVELOPES           of loads; 1: some have frequencies that params change
  *     PL_PEAKS                   outputs that are peaks, of peaks.h
  *     PL_WORK, PL_PASS_WORK, PL_SIZE            numbers of two words that a retune works in, a state between; of x
  *     PL_BLOCKS                  for the state at any time; 0: it is not asked for
@@ -25,8 +25,8 @@
  *     PL(nominal), PL(until)     the spec's coefficients; time to a change of the loads
  *     PL(retune_groups)(c, params, h, made, work)   each group by PL(retune_group), if there is one
  *     PL(block)[PL_BLOCKS], PL(vector_now)(s, u, x)    x of the whole now
- *     PL(rate_entry)[PL_PHASES]  entries for the frequencies, -1: no param changes it; PL(decays)[PL_GROWTHS]
- *     PL(phase_rate), PL(growth_rate)  of loads */
+ *     PL(rate_entry)[PL_PHASES]  entries for the frequencies, -1: no param changes it; PL(decays)[PL_ENVELOPES]
+ *     PL(phase_rate), PL(envelope_rate)  of loads */
 #include "numbers.h"
 
 #if PL_WHOLE || PL_LISTED || PL_BLOCKS > 0
@@ -303,7 +303,7 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
             continue;
         }
 #endif
-        c->phase_step[i] = pl_turn_at(rate, h);
+        c->phase_step[i] = pl_phase_at(rate, h);
     }
     (void)value;
 }
@@ -311,7 +311,7 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
 
 static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, const pl_two *made, real h, pl_two *work)
 {
-#if PL_OUT > 0 || (PL_ANY_STEP && PL_GROWTHS > 0)
+#if PL_OUT > 0 || (PL_ANY_STEP && PL_ENVELOPES > 0)
     int i;
 #endif
 #if PL_OUT > 0
@@ -323,9 +323,9 @@ static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, const pl_two *
 #if PL_PHASES > 0 && (PL_RATES || PL_ANY_STEP)
     PL(retune_phases)(c, value, h);
 #endif
-#if PL_ANY_STEP && PL_GROWTHS > 0
-    for (i = 0; i < PL_GROWTHS; i++) {
-        c->growth_step[i] = pl_growth_at(&PL(growth_rate)[i], PL(decays)[i], h);
+#if PL_ANY_STEP && PL_ENVELOPES > 0
+    for (i = 0; i < PL_ENVELOPES; i++) {
+        c->envelope_step[i] = pl_envelope_at(&PL(envelope_rate)[i], PL(decays)[i], h);
     }
 #endif
 #if PL_PEAKS > 0

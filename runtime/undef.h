@@ -116,7 +116,7 @@
 #undef PL_GONE
 #undef PL_FRICTION_FORCES
 #undef PL_GROUPS
-#undef PL_GROWTHS
+#undef PL_ENVELOPES
 #undef PL_GUARDS
 #undef PL_H
 #undef PL_HALVINGS

@@ -294,7 +294,7 @@ const char *shortest(double d);
 
 /* ---- texts.c: the runtime, inside the program ---- */
 
-const char *runtime_text(const char *name);                 /* plrt.h, turns.c, ...; NULL: there is none of this name */
+const char *runtime_text(const char *name);                 /* plrt.h, phases.c, ...; NULL: there is none */
 const char *runtime_name(int file);                         /* of all of them, from 0; NULL: there are no more */
 
 /* ---- rational.c: exact numbers: a step of a sum of products, and as text ---- */

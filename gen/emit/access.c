@@ -42,12 +42,12 @@ static void emit_ranges(const struct emitter *e)
 /* Growths that are negative, and how many samples around now each input is kept of */
 static void emit_flags(const struct emitter *e)
 {
-	int *list = ARRAY(int, (size_t)(e->growths + e->system->inputs));
+	int *list = ARRAY(int, (size_t)(e->envelopes + e->system->inputs));
 	for (int l = 0; l < e->system->loads; l++)
-		if (e->growth[l] >= 0)
-			list[e->growth[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
-	if (e->growths)
-		emit_integers(e, "unsigned char", "falls", e->growths, list);
+		if (e->envelope[l] >= 0)
+			list[e->envelope[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
+	if (e->envelopes)
+		emit_integers(e, "unsigned char", "falls", e->envelopes, list);
 	for (int i = 0; i < e->system->inputs; i++)
 		list[i] = e->system->input[i].hold;
 	if (most_samples_before(e))
@@ -96,7 +96,7 @@ void emit_access(const struct emitter *e)
 		   { "COMPENSATED", step->program->compensated },
 		   { "CARRIES", step->carried.count }, { "RELATIVE", e->model->relative != NULL },
 		   { "PHASES", e->phases },
-		   { "GROWTHS", e->growths }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
+		   { "ENVELOPES", e->envelopes }, { "LEADS", held_leads(e) }, { "PEAKS", peak_outputs(e->model) },
 		   { "BY_VALUES", peaks_by_values(e->step) },
 		   { "REFRESHED", step->refresh != NULL }, { "SEGMENTS", e->system->segments },
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },

@@ -69,13 +69,13 @@ static bool load_is_needed(const struct emitter *e, int load)
 static void number_loads(struct emitter *e)
 {
 	e->phase = ARRAY(int, (size_t)e->system->loads);
-	e->growth = ARRAY(int, (size_t)e->system->loads);
+	e->envelope = ARRAY(int, (size_t)e->system->loads);
 	e->phasor = ARRAY(int, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct forcing *forcing = e->system->load[l].forcing;
 		bool needed = load_is_needed(e, l);
 		e->phase[l] = needed && oscillates(forcing) ? e->phases++ : -1;
-		e->growth[l] = needed && mpq_sgn(forcing->a) != 0 ? e->growths++ : -1;
+		e->envelope[l] = needed && mpq_sgn(forcing->a) != 0 ? e->envelopes++ : -1;
 		e->phasor[l] = is_refreshed(e->step, l) ? e->refreshed : -1;
 		e->refreshed += is_refreshed(e->step, l) ? e->system->load[l].columns : 0;
 	}

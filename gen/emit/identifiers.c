@@ -24,7 +24,7 @@ struct identifiers {
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "growth", "factor", "left", "node", "which", "start", "slope",
+	"s", "y", "t", "u", "out", "dydt", "residual", "envelope", "factor", "left", "node", "which", "start", "slope",
 	"interval", "excess", "now", "first", "turn", "rotated", "samples", "cell", "clear", "real",
 	"tau", "when", "segment", "span", "terms", "c", "e",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */

@@ -9,7 +9,7 @@
 
 /* Of the runtime: a name that is one of these, or begins so before a _, has an f behind that; longer ones first. */
 static const char *const stems[] = {
-	"pl_turn", "pl_rate", "pl_lead", "pl_cossin", "pl_growth", "pl_series_switching", "pl_series", "pl_two",
+	"pl_phase", "pl_rate", "pl_lead", "pl_cossin", "pl_envelope", "pl_series_switching", "pl_series", "pl_two",
 	"pl_power", "pl_until", "pl_accumulate", "pl_multiply", "pl_not_finite", "pl_magnitude", "pl_root",
 	"pl_factor", "pl_solve", "pl_formulas", "pl_increment", "pl_ramp", "pl_entries", "pl_block",
 	"pl_group", "pl_region", "pl_event_split", "pl_impact", "pl_guards", "pl_switching", "pl_crossing",

@@ -6,7 +6,7 @@
 #include "formulas.h"
 #include "state.h"
 
-void emit_load_tables(const struct emitter *e);                   /* phases and growths: start, step, rate */
+void emit_load_tables(const struct emitter *e);                   /* phases and envelopes: start, step, rate */
 void emit_load_members(const struct emitter *e);
 const char *phase_rate_text(const struct emitter *e);             /* of the model, or the instance */
 void emit_load_advance(const struct emitter *e, const char *steps); /* `steps` NULL: one */
@@ -24,7 +24,7 @@ const char *column_operand(const struct emitter *e, int column);
 
 void emit_phase_rates(const struct emitter *e);                   /* rows of initialisers */
 const char *phase_step_text(const struct emitter *e, int load);   /* in one step: a turn, as an initialiser */
-const char *growth_step_text(const struct emitter *e, int load);
+const char *envelope_step_text(const struct emitter *e, int load);
 void emit_changes(const struct emitter *e);                       /* loads that change their formula: when */
 void emit_held_remainder(const struct emitter *e);                /* which operator serves, and the remainder now */
 void emit_passing(const struct emitter *e);                       /* ... and pass(), across a change */

@@ -29,8 +29,8 @@ struct emitter {
 	const char *options;
 	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
-	int phases, growths;        /* in the state */
-	int *phase, *growth;        /* per load: index of its phase and of its growth; -1: none */
+	int phases, envelopes;        /* in the state */
+	int *phase, *envelope;        /* per load: index of its phase and of its envelope; -1: none */
 	bool ramps;                 /* some input is of first order */
 	int refreshed;              /* load states in the state, at the last refresh */
 	int *phasor;                /* per load: index of its first there; -1: none */

@@ -16,8 +16,8 @@ const void *const pl_counts = &pl_counted;
 
 #define pl_cossin(a, z) (pl_counted.forcings++, PL_TAKES(PL_COSSIN_MUL, PL_COSSIN_ADD), pl_cossin(a, z))
 #define pl_cossinf(a, z) (pl_counted.forcings++, PL_TAKES(PL_COSSINF_MUL, PL_COSSINF_ADD), pl_cossinf(a, z))
-#define pl_growth_value(a) (PL_TAKES(PL_GROWTH_MUL, PL_GROWTH_ADD), pl_growth_value(a))
-#define pl_growthf_value(a) (PL_TAKES(PL_GROWTHF_MUL, PL_GROWTHF_ADD), pl_growthf_value(a))
+#define pl_envelope_value(a) (PL_TAKES(PL_ENVELOPE_MUL, PL_ENVELOPE_ADD), pl_envelope_value(a))
+#define pl_envelopef_value(a) (PL_TAKES(PL_ENVELOPEF_MUL, PL_ENVELOPEF_ADD), pl_envelopef_value(a))
 #define pl_accumulate(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulate(sum, term, small, rest))
 #define pl_accumulatef(sum, term, small, rest) (PL_TAKES(0, PL_ACCUMULATE_ADD), pl_accumulatef(sum, term, small, rest))
 

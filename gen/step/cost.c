@@ -63,9 +63,9 @@ static struct cost functions_of_load(const struct load *load, bool single)
 {
 	bool turns = oscillates(load->forcing), grows = mpq_sgn(load->forcing->a) != 0;
 	return (struct cost){ turns * (single ? PL_COSSINF_MUL : PL_COSSIN_MUL) +
-				      grows * (single ? PL_GROWTHF_MUL : PL_GROWTH_MUL),
+				      grows * (single ? PL_ENVELOPEF_MUL : PL_ENVELOPE_MUL),
 			      turns * (single ? PL_COSSINF_ADD : PL_COSSIN_ADD) +
-				      grows * (single ? PL_GROWTHF_ADD : PL_GROWTH_ADD), 0 };
+				      grows * (single ? PL_ENVELOPEF_ADD : PL_ENVELOPE_ADD), 0 };
 }
 
 static bool is_used(const struct program *program, const struct load *load, int column)

@@ -341,7 +341,7 @@ static bool write_text(const char *path, const char *text)
 	return (fclose(f) == 0) & written;
 }
 
-/* turnsf.c is what turns.c is, for models in float. */
+/* phasesf.c is what phases.c is, for models in float. */
 static bool is_for_float(const struct toolchain *t, size_t source)
 {
 	size_t length = strlen(t->source[source]);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* A driver for hosts: runs one model and writes its outputs as CSV, or as they are.
  *
- *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/turns.c ... -DMODEL=scs -o m
+ *     cc -Iruntime runtime/host/plmain.c model_pl.c runtime/phases.c ... -DMODEL=scs -o m
  *     ./m 30 < inputs.csv > out.csv
  *
  * A model made with --real float is compiled with -DFLOAT too.  Tunable params, and the step, take other values on the

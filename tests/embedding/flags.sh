@@ -21,8 +21,8 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 "$plgen" "$root/models/pendulum.spec" >remainder.c || exit 99
 cp "$root"/runtime/*.c .
 # All go through plrt.h; these stand for the others.
-doubles='double.c turns.c until.c'
-floats='float.c turnsf.c untilf.c'
+doubles='double.c phases.c until.c'
+floats='float.c phasesf.c untilf.c'
 two_words=until.c
 two_wordsf=untilf.c
 for file in *.c; do
@@ -111,7 +111,7 @@ for compiler in gcc g++ clang clang++ arm-none-eabi-gcc; do
     for level in -O0 -Os '-O3 -ffp-contract=fast -fno-signed-zeros -fno-trapping-math -fno-math-errno'; do
         accepted $compiler "$level" "$all compensated.c"
     done
-    accepted $compiler '-O2 -ffinite-math-only' 'double.c turnsf.c'
+    accepted $compiler '-O2 -ffinite-math-only' 'double.c phasesf.c'
     refused $compiler -D_M_FP_FAST '/fp:fast' double.c
 done
 accepted gcc '-std=c11 -O2' "double.c float.c"
@@ -156,7 +156,7 @@ for compiler in gcc clang; do
         continue
     fi
     refused $compiler "$x87" 'bits of their type' "compensated.c compensatedf.c $two_words $two_wordsf"
-    accepted $compiler "$x87" 'double.c float.c turns.c'
+    accepted $compiler "$x87" 'double.c float.c phases.c'
     accepted $compiler "$sse" "$doubles $floats compensated.c compensatedf.c"
 done
 

@@ -173,7 +173,7 @@ fi
 
 for m in $models; do
     # the banner may speak of phases
-    sed '1,/^ \*\/$/d' "$m/stdout.c" | grep -E 'pl_cossin|phase|pl_turn|pl_rate|wave' >log
+    sed '1,/^ \*\/$/d' "$m/stdout.c" | grep -E 'pl_cossin|phase|pl_phase|pl_rate|wave' >log
     found=$?
     sed 's/#.*//' "$root/models/$m.spec" | grep -q -E '(cos|sin)\('
     forced=$?
@@ -299,7 +299,7 @@ right() {
 locals='s y u n k i j x z w h tau out dydt t0 power work wave wave1 wave2 load residual series slope phase
     phase_start phase_step phase_rate start power_entry row column value state_names output_names any_init any_step
     any_out unused size states degree halvings A M C K x_dot y_dot s_dot v_dot double_ pl_cossin
-    pl_turn pl_turn_add pl_series_advance pl_power_apply
+    pl_phase pl_phase_add pl_series_advance pl_power_apply
     uint64_t size_t int64_t
     PROBE_STATES PROBE_H probe probe_time probe_get probe_out probe_slope probe_phase_step'
 macros='NAN INFINITY HUGE_VAL M_PI M_E INT_MAX UINT64_MAX SIZE_MAX UINT64_C INT64_C FP_NAN MATH_ERRNO NULL EOF I

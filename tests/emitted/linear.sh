@@ -232,7 +232,7 @@ load0 load1 load2 load3 load4 growth
 growth_step growth_rate factor segment change x1_dot
 direct done series A y t0
 k u pass plain_step use_segment phase
-pl_growth load_slope load_factor s tau out
+pl_envelope load_slope load_factor s tau out
 n i j h z dydt
 Gamma slope hold_u before load residual
 EOF

@@ -133,7 +133,7 @@ done
 
 for f in "$root"/runtime/*f.c; do
     case ${f##*/} in
-        turnsf.c | seriesf.c | powerf.c | untilf.c | growthf.c | applyf.c | crossingsf.c | rootf.c | densef.c)
+        phasesf.c | seriesf.c | powerf.c | untilf.c | envelopef.c | applyf.c | crossingsf.c | rootf.c | densef.c)
             no_double_instruction "$f" "runtime ${f##*/}" ;;
     esac
 done

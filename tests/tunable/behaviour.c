@@ -43,7 +43,7 @@ static bool same_coeffs(const struct tuned *m, const void *a, const void *b)
     } member[] = {{m->h, sizeof(real)}, {m->params, (size_t)m->model->params * sizeof(real)},
         {m->step, (size_t)m->step_entries * row},
                   {m->out, (size_t)m->out_entries * row}, {m->phase_step, (size_t)m->phase_step_entries * word},
-                      {m->growth_step, (size_t)m->growth_step_entries * word}};
+                      {m->envelope_step, (size_t)m->envelope_step_entries * word}};
     for (size_t i = 0; i < sizeof member / sizeof *member; i++)
         if (memcmp((const char *)a + member[i].at, (const char *)b + member[i].at, member[i].length) != 0)
             return false;

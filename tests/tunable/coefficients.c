@@ -11,7 +11,7 @@
  *     states x states      16 ulp of the largest entry of Phi
  *     a load, an input     16 ulp of the largest entry of its column, in each segment of time
  *     outputs              16 ulp of the largest factor of the row
- *     phases, growths      bit for bit; where a frequency is 2 pi f, what rounds to it is within 2^-104, in
+ *     phases, envelopes      bit for bit; where a frequency is 2 pi f, what rounds to it is within 2^-104, in
  *                          floats 2^-45, of w h / (2 pi)
  *
  * NAME_nominal is what the generator has for the spec's values, bit for bit. The largest met is printed for each
@@ -311,7 +311,7 @@ static bool nearly(const uint64_t *found, int words, mpq_srcptr w, mpq_srcptr h)
 /* w: of a phase, its frequency; else NULL */
 static void compare_words(const char *coeffs, size_t place, int index, const char *text, mpq_srcptr w, mpq_srcptr h)
 {
-    const char *what = w ? "phase" : "growth";
+    const char *what = w ? "phase" : "envelope";
     uint64_t word[2], found[2];
     const int words = integers_of(text, word), expected = BITS == 53 ? 2 : 1;
     if (words != expected) {
@@ -328,17 +328,17 @@ static void compare_words(const char *coeffs, size_t place, int index, const cha
 static void compare_loads(const struct tuned *m, const char *coeffs, const struct step *step)
 {
     const struct emitter e = { .step = step, .model = step->model, .system = &step->branch->system };
-    int phases = 0, growths = 0;
+    int phases = 0, envelopes = 0;
     for (int l = 0; l < step->branch->system.loads; l++) {
         const struct forcing *forcing = step->branch->system.load[l].forcing;
         if (mpq_sgn(forcing->w) != 0)
             compare_words(coeffs, m->phase_step, phases++, phase_step_text(&e, l), forcing->w, step->model->h);
         if (mpq_sgn(forcing->a) != 0)
-            compare_words(coeffs, m->growth_step, growths++, growth_step_text(&e, l), NULL, NULL);
+            compare_words(coeffs, m->envelope_step, envelopes++, envelope_step_text(&e, l), NULL, NULL);
     }
-    if (phases != m->phase_step_entries || growths != m->growth_step_entries)
-        complain(format("%d phases and %d growths, expected %d and %d", m->phase_step_entries, m->growth_step_entries,
-                        phases, growths));
+    if (phases != m->phase_step_entries || envelopes != m->envelope_step_entries)
+        complain(format("%d phases and %d envelopes, expected %d and %d", m->phase_step_entries,
+                        m->envelope_step_entries, phases, envelopes));
 }
 
 /* Whether any param changes the row of an output: from the spec and from values that are all different */

@@ -17,8 +17,8 @@ struct tuned {
     void (*use)(void *s, const void *coeffs);
     size_t h, params;                       /* in NAME_coeffs */
     int columns;
-    size_t step, out, phase_step, growth_step;
-    int step_entries, out_entries, phase_step_entries, growth_step_entries; /* rows of it; 0: there is no such member */
+    size_t step, out, phase_step, envelope_step;
+    int step_entries, out_entries, phase_step_entries, envelope_step_entries; /* rows of it; 0: no such member */
 };
 extern const struct tuned tuned[];          /* up to one without a name */
 

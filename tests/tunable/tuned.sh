@@ -61,7 +61,7 @@ entry() {
         has "$1" step
         has "$1" out
         has "$1" phase_step
-        has "$1" growth_step
+        has "$1" envelope_step
         echo '    },'
     } >>"$work/table"
 }

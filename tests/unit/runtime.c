@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* All tests of the runtime of one type. PROGRAM [PATTERN]: those whose names match, as in 'turns_*' or apply_products.
+/* All tests of the runtime of one type. PROGRAM [PATTERN]: those whose names match, as in 'phases_*' or apply_products.
  */
 #include "runtime.h"
 

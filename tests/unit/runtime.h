@@ -35,7 +35,7 @@ struct room {
 #define ROOM(name, ...) ROOM_WITH(name, NULL, NULL, __VA_ARGS__)
 
 #define ROOMS(each) \
-    each(turns) each(growth) each(series) each(power) each(until) each(apply) each(crossings) each(increments) \
+    each(phases) each(envelope) each(series) each(power) each(until) each(apply) each(crossings) each(increments) \
     each(retune) each(rate) each(dense) each(around)
 #define DECLARE_ROOM(name) extern const struct room room_of_##name;
 ROOMS(DECLARE_ROOM)

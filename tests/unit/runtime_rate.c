@@ -103,10 +103,10 @@ static void none(void **state)
 static void part_of_turn(const pl_lead *lead, mpfr_t part)
 {
 #ifdef REAL_IS_FLOAT
-    mpfr_set_ui_2exp(part, lead->turn, -64, MPFR_RNDN);
+    mpfr_set_ui_2exp(part, lead->phase, -64, MPFR_RNDN);
 #else
-    mpfr_set_ui_2exp(part, lead->turn.hi, -64, MPFR_RNDN);
-    mpfr_set_ui_2exp(found, lead->turn.lo, -128, MPFR_RNDN);
+    mpfr_set_ui_2exp(part, lead->phase.hi, -64, MPFR_RNDN);
+    mpfr_set_ui_2exp(found, lead->phase.lo, -128, MPFR_RNDN);
     mpfr_add(part, part, found, MPFR_RNDN);
 #endif
 }

@@ -198,7 +198,7 @@ static struct emitter emitter_of_block(const struct emitter *e, const struct der
 	for (int l = 0; l < b.system->loads; l++) {
 		const int own = load_alike(e->system, &b.system->load[l]);
 		b.phase[l] = own == NONE ? NONE : e->phase[own];
-		b.growth[l] = own == NONE ? NONE : e->growth[own];
+		b.envelope[l] = own == NONE ? NONE : e->envelope[own];
 	}
 	struct standing *at = NEW(struct standing);
 	at->state = places_of_states(e->step->model->written, block);

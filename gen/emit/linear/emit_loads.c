@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Loads on the target: phases as turns, growths as exponents of 2, load states made of them at a step's start. */
+/* Loads on the target: phases as turns, envelopes as exponents of 2, load states made of them at a step's start. */
 #include "inner.h"
 #include "emit/state.h"
 #include "emit/steps.h"
@@ -20,7 +20,7 @@ static void print_rate(const struct emitter *e, const struct rate *rate, const c
 	say(e, "}, %ld},  /* %s */\n", -rate->exponent, note);
 }
 
-static const char *growth_text(const struct emitter *e, const struct advance *advance)
+static const char *envelope_text(const struct emitter *e, const struct advance *advance)
 {
 	bool one_word = phase_bits(e->step) == 64;
 	uint64_t high = one_word ? advance->growth.low : advance->growth.high;
@@ -48,14 +48,14 @@ const char *phase_step_text(const struct emitter *e, int load)
 	return phase_text(e, &e->step->linear.phase[load].step);
 }
 
-const char *growth_step_text(const struct emitter *e, int load)
+const char *envelope_step_text(const struct emitter *e, int load)
 {
-	return growth_text(e, &e->step->linear.phase[load].step);
+	return envelope_text(e, &e->step->linear.phase[load].step);
 }
 
 static void print_turns(const struct emitter *e, const char *name, const char *what, bool per_step)
 {
-	say(e, "\nstatic const pl_turn $n_%s[%d] = {  /* %s */\n", name, e->phases, what);
+	say(e, "\nstatic const pl_phase $n_%s[%d] = {  /* %s */\n", name, e->phases, what);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load_phase *phase = &e->step->linear.phase[l];
 		if (e->phase[l] >= 0)
@@ -65,18 +65,18 @@ static void print_turns(const struct emitter *e, const char *name, const char *w
 	say(e, "};\n");
 }
 
-static void print_growths(const struct emitter *e)
+static void print_envelopes(const struct emitter *e)
 {
 	say(e, "\n"
-	       "static const pl_growth $n_growth_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n",
-	    e->growths, growth_bits(e->step));
+	       "static const pl_envelope $n_envelope_step[%d] = {  /* a h / ln 2, in units of 2^-%d */\n",
+	    e->envelopes, growth_bits(e->step));
 	for (int l = 0; l < e->system->loads; l++)
-		if (e->growth[l] >= 0)
-			say(e, "    %s,  /* %s */\n", growth_step_text(e, l), column_text(&e->system->load[l], 0));
+		if (e->envelope[l] >= 0)
+			say(e, "    %s,  /* %s */\n", envelope_step_text(e, l), column_text(&e->system->load[l], 0));
 	say(e, "};\n");
 }
 
-/* Phases or growths at the nodes: one row for each node; loads that are not read there keep their place. */
+/* Phases or envelopes at the nodes: one row for each node; loads that are not read there keep their place. */
 struct node_table {
 	const char *type, *name;
 	const int *index;
@@ -116,21 +116,21 @@ void emit_node_phases(const struct emitter *e, const bool *loads)
 	bool turning = false, growing = false;
 	for (int l = 0; l < e->system->loads; l++) {
 		turning = turning || (loads[l] && e->phase[l] >= 0);
-		growing = growing || (loads[l] && e->growth[l] >= 0);
+		growing = growing || (loads[l] && e->envelope[l] >= 0);
 	}
-	struct node_table phases = { "pl_turn", "node_phase", e->phase, e->phases, phase_text };
-	struct node_table growths = { "pl_growth", "node_growth", e->growth, e->growths, growth_text };
+	struct node_table phases = { "pl_phase", "node_phase", e->phase, e->phases, phase_text };
+	struct node_table envelopes = { "pl_envelope", "node_envelope", e->envelope, e->envelopes, envelope_text };
 	if (turning)
 		print_node_rows(e, &phases);
 	if (growing)
-		print_node_rows(e, &growths);
+		print_node_rows(e, &envelopes);
 }
 
 static void print_rate_rows(const struct emitter *e, bool turns)
 {
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct load_phase *phase = &e->step->linear.phase[l];
-		if ((turns ? e->phase : e->growth)[l] >= 0)
+		if ((turns ? e->phase : e->envelope)[l] >= 0)
 			print_rate(e, turns ? &phase->turns : &phase->growth, column_text(&e->system->load[l], 0));
 	}
 }
@@ -164,10 +164,10 @@ void emit_load_tables(const struct emitter *e)
 			print_rates(e, true, "phase_rate", e->phases,
 				    "their frequencies: cycles per second, mantissa and exponent");
 	}
-	if (e->growths) {
+	if (e->envelopes) {
 		if (!e->step->is.tuned)
-			print_growths(e);
-		print_rates(e, false, "growth_rate", e->growths, "|a| / ln 2 [1/s]");
+			print_envelopes(e);
+		print_rates(e, false, "envelope_rate", e->envelopes, "|a| / ln 2 [1/s]");
 	}
 }
 
@@ -177,9 +177,9 @@ void emit_load_members(const struct emitter *e)
 {
 	const char *when = e->step->refresh ? " at the refresh" : "";
 	if (e->phases)
-		say(e, "    pl_turn phase[%d];    /* of the loads%s */\n", e->phases, when);
-	if (e->growths)
-		say(e, "    pl_growth growth[%d]; /* of the loads%s */\n", e->growths, when);
+		say(e, "    pl_phase phase[%d];    /* of the loads%s */\n", e->phases, when);
+	if (e->envelopes)
+		say(e, "    pl_envelope envelope[%d]; /* of the loads%s */\n", e->envelopes, when);
 }
 
 const char *phase_rate_text(const struct emitter *e)
@@ -187,7 +187,7 @@ const char *phase_rate_text(const struct emitter *e)
 	return has_tuned_rates(e) ? "s->coeffs.phase_rate" : spell(e, "$n_phase_rate");
 }
 
-/* s->phase[i], or s->growth[i], gains what it does in one step, or `steps` times that */
+/* s->phase[i], or s->envelope[i], gains what it does in one step, or `steps` times that */
 static void advance_one(const struct emitter *e, const char *what, const char *type, int i, const char *steps)
 {
 	const char *gain = format("%s[%d]", of_step(e, format("%s_step", what)), i);
@@ -199,9 +199,9 @@ static void advance_one(const struct emitter *e, const char *what, const char *t
 void emit_load_advance(const struct emitter *e, const char *steps)
 {
 	for (int i = 0; i < e->phases; i++)
-		advance_one(e, "phase", "pl_turn", i, steps);
-	for (int i = 0; i < e->growths; i++)
-		advance_one(e, "growth", "pl_growth", i, steps);
+		advance_one(e, "phase", "pl_phase", i, steps);
+	for (int i = 0; i < e->envelopes; i++)
+		advance_one(e, "envelope", "pl_envelope", i, steps);
 }
 
 /* ---- load states ---- */
@@ -223,14 +223,14 @@ const char *column_operand(const struct emitter *e, int column)
 static const char *later(const struct emitter *e, const char *what, const char *type, int i)
 {
 	int load = 0;
-	while ((strcmp(what, "phase") == 0 ? e->phase : e->growth)[load] != i)
+	while ((strcmp(what, "phase") == 0 ? e->phase : e->envelope)[load] != i)
 		load++;
 	const char *falls = mpq_sgn(e->system->load[load].forcing->a) < 0 ? "1, " : "0, ";
 	return format("%s_add(s->%s[%d], %s_at(&%s_%s_rate[%d], %s%s))", type, what, i, type, e->name, what, i,
 		      strcmp(what, "phase") == 0 ? "" : falls, e->after);
 }
 
-/* s->phase[i] or s->growth[i], and what it has gained since: up to the node, or from the refresh up to now */
+/* s->phase[i] or s->envelope[i], and what it has gained since: up to the node, or from the refresh up to now */
 static const char *now_of(const struct emitter *e, const char *what, const char *type, int i)
 {
 	const char *kept = format("s->%s[%d]", what, i);
@@ -243,9 +243,9 @@ static const char *now_of(const struct emitter *e, const char *what, const char 
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
 }
 
-static const char *growth_now(const struct emitter *e, int i)
+static const char *envelope_now(const struct emitter *e, int i)
 {
-	return now_of(e, "growth", "pl_growth", i);
+	return now_of(e, "envelope", "pl_envelope", i);
 }
 
 /* load1[0]; in the refresh s->phasor[0] */
@@ -275,18 +275,18 @@ void emit_load_powers(const struct emitter *e, int l)
 void emit_load_functions(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
-	bool turns = oscillates(load->forcing), grows = e->growth[l] >= 0;
+	bool turns = oscillates(load->forcing), grows = e->envelope[l] >= 0;
 	const char *pair = e->at_refresh ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
 	if (turns)
-		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_turn", e->phase[l]), pair);
+		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_phase", e->phase[l]), pair);
 	if (turns && grows)
-		say(e, "    growth = pl_growth_value(%s);\n"
-		       "    %s *= growth;\n"
-		       "    %s *= growth;\n",
-		    growth_now(e, e->growth[l]), load_cell(e, l, 0), load_cell(e, l, 1));
+		say(e, "    envelope = pl_envelope_value(%s);\n"
+		       "    %s *= envelope;\n"
+		       "    %s *= envelope;\n",
+		    envelope_now(e, e->envelope[l]), load_cell(e, l, 0), load_cell(e, l, 1));
 	else if (!turns)
 		say(e, "    %s = %s;\n", load_cell(e, l, 0),
-		    grows ? format("pl_growth_value(%s)", growth_now(e, e->growth[l])) : "1.0");
+		    grows ? format("pl_envelope_value(%s)", envelope_now(e, e->envelope[l])) : "1.0");
 	emit_load_powers(e, l);
 }
 
@@ -302,15 +302,15 @@ static void emit_one_load(const struct emitter *e, int l)
 
 void emit_load_states(const struct emitter *e, const bool *loads, bool time_is_there)
 {
-	bool time = false, growth = false;
+	bool time = false, envelope = false;
 	for (int l = 0; l < e->system->loads; l++) {
 		time = time || (loads[l] && e->system->load[l].powers > 1);
-		growth = growth || (loads[l] && e->growth[l] >= 0 && e->phase[l] >= 0);
+		envelope = envelope || (loads[l] && e->envelope[l] >= 0 && e->phase[l] >= 0);
 	}
 	if (time && !time_is_there)
 		say(e, "    const double t = $n_time(s);\n");
-	if (growth)
-		say(e, "    double growth;\n");
+	if (envelope)
+		say(e, "    double envelope;\n");
 	for (int l = 0; l < e->system->loads; l++)
 		if (loads[l] && !(is_polynomial(e->system->load[l].forcing) && e->system->load[l].powers == 1))
 			emit_one_load(e, l);

@@ -83,20 +83,20 @@ static void emit_catch_up(const struct emitter *e, const char *what, const char 
 static void emit_refresh(const struct emitter *e)
 {
 	struct emitter there = *e;
-	bool time = false, growth = false;
+	bool time = false, envelope = false;
 	there.at_refresh = true;
 	for (int l = 0; l < e->system->loads; l++) {
 		time = time || (e->phasor[l] >= 0 && e->system->load[l].powers > 1);
-		growth = growth || (e->phasor[l] >= 0 && e->growth[l] >= 0 && e->phase[l] >= 0);
+		envelope = envelope || (e->phasor[l] >= 0 && e->envelope[l] >= 0 && e->phase[l] >= 0);
 	}
 	open_function(e, "A refresh now: functions of the loads, from phases that lose nothing however long a run is",
 		      "static void $n_refresh_phasors($n *s)");
 	if (time)
 		say(e, "    const double t = $n_time(s);\n");
-	if (growth)
-		say(e, "    double growth;\n");
-	emit_catch_up(e, "phase", "pl_turn", e->phases);
-	emit_catch_up(e, "growth", "pl_growth", e->growths);
+	if (envelope)
+		say(e, "    double envelope;\n");
+	emit_catch_up(e, "phase", "pl_phase", e->phases);
+	emit_catch_up(e, "envelope", "pl_envelope", e->envelopes);
 	for (int l = 0; l < e->system->loads; l++)
 		if (e->phasor[l] >= 0)
 			emit_load_functions(&there, l);

@@ -20,7 +20,7 @@ void emit_modal_step(const struct emitter *e, const char *const *acting_text);
 /* ---- emit_loads.c, emit_refresh.c, emit_time.c, emit_step.c ---- */
 
 void emit_load_array(const struct emitter *e, int load);          /* load1[2], what its states are called */
-void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and growth */
+void emit_load_functions(const struct emitter *e, int load);      /* its states, from its phase and envelope */
 void emit_load_powers(const struct emitter *e, int load);         /* those with t, from those without */
 /* as emit_load_states, in a step: at the refresh, to be multiplied with rotated[...]; elsewhere: of now */
 void emit_refreshed_loads(const struct emitter *e, const bool *loads);

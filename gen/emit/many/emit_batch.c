@@ -86,7 +86,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	    alone ? "a copy of the first"
 		  : format("what all share: time%s%s; its states are not used",
 			   e->system->inputs ? ", the last sample" : "",
-			   e->phases || e->growths ? ", phases of loads" : ""));
+			   e->phases || e->envelopes ? ", phases of loads" : ""));
 }
 
 void emit_batch_declarations(const struct emitter *e)

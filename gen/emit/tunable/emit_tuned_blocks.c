@@ -53,7 +53,7 @@ static void emit_outputs(const struct emitter *e)
 	close_member(e);
 }
 
-/* What of each load moves on in a step: its phase, or its growth */
+/* What of each load moves on in a step: its phase, or its envelope */
 static void emit_loads(const struct emitter *e, const char *type, const char *name, int count, const int *index,
 		       const char *(*step_text)(const struct emitter *, int))
 {
@@ -96,13 +96,13 @@ void emit_tuned_members(const struct emitter *e)
 	if (e->model->params.tuning->outputs)
 		emit_outputs(e);
 	emit_nominal_peaks(e);
-	emit_loads(e, "pl_turn", "phase_step", e->phases, e->phase, phase_step_text);
+	emit_loads(e, "pl_phase", "phase_step", e->phases, e->phase, phase_step_text);
 	if (e->phases && e->model->params.tuning->frequencies) {
 		open_member(e, "pl_rate", "phase_rate", format("[%d]", e->phases), "in turns per second");
 		emit_phase_rates(e);
 		close_member(e);
 	}
-	emit_loads(e, "pl_growth", "growth_step", e->growths, e->growth, growth_step_text);
+	emit_loads(e, "pl_envelope", "envelope_step", e->envelopes, e->envelope, envelope_step_text);
 }
 
 /* ---- the equations on the target ---- */
@@ -291,7 +291,7 @@ static void emit_others(const struct emitter *e, const struct equations_text *te
 		    t->outputs && t->frequencies ? "; frequencies of loads, in column 0" : "", text->entries);
 }
 
-/* By phases: which entry of the equations its frequency is; by growths: whether a load decays */
+/* By phases: which entry of the equations its frequency is; by envelopes: whether a load decays */
 static void emit_rows_of_loads(const struct emitter *e)
 {
 	const int loads = e->system->loads;
@@ -299,13 +299,13 @@ static void emit_rows_of_loads(const struct emitter *e)
 	for (int l = 0; l < loads; l++) {
 		if (e->phase[l] >= 0)
 			row[e->phase[l]] = blocks_of_step(e)->frequency[l];
-		if (e->growth[l] >= 0)
-			decays[e->growth[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
+		if (e->envelope[l] >= 0)
+			decays[e->envelope[l]] = mpq_sgn(e->system->load[l].forcing->a) < 0;
 	}
 	if (e->model->params.tuning->frequencies)
 		emit_integers(e, "short", "rate_entry", e->phases, row);
-	if (e->growths && blocks_of_step(e)->full)
-		emit_integers(e, "unsigned char", "decays", e->growths, decays);
+	if (e->envelopes && blocks_of_step(e)->full)
+		emit_integers(e, "unsigned char", "decays", e->envelopes, decays);
 }
 
 /* ---- what retune.h is given ---- */
@@ -339,7 +339,7 @@ static void emit_sizes_of_tuning(const struct emitter *e)
 		   { "ROWS", p->others.rows }, { "OPERATIONS", p->operations },
 		   { "SOLVED", p->solved },
 		   { "OUT", t->outputs }, { "OUT_COLUMNS", t->x.size },
-		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "GROWTHS", e->growths },
+		   { "PHASES", e->phases }, { "RATES", t->frequencies > 0 }, { "ENVELOPES", e->envelopes },
 		   { "PEAKS", has_peak_rows(e) ? peak_outputs(e->model) : 0 },
 		   { "WORK", p->work }, { "PASS_WORK", p->more }, { "SIZE", e->step->layout.size },
 		   { "BLOCKS", e->step->series.emitted ? p->blocks : 0 }, { "JUMPS", has_jump(e) });

@@ -18,7 +18,7 @@ void emit_held_retune(const struct emitter *e);
 void emit_nominal(const struct emitter *e);
 void emit_tuned_at(const struct emitter *e);                      /* pass, from change to change of the loads; at */
 void emit_node_times(const struct emitter *e);                     /* NAME_node */
-/* phases and growths from the start of the step to each node */
+/* phases and envelopes from the start of the step to each node */
 void emit_node_phases(const struct emitter *e, const bool *loads);
 
 #endif

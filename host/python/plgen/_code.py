@@ -153,7 +153,7 @@ class Compiler:
             raise Error("the compiler '{}' could not make a program of the model:\n{}".format(self.words[0], said))
 
     def _runtime_object(self, single: bool, work: str, path: str) -> None:
-        """turnsf.c is what turns.c is, for models in float."""
+        """phasesf.c is what phases.c is, for models in float."""
         floats = [name for name in self.sources if name[-3] == 'f' and name[:-3] + '.c' in self.sources]
         chosen = [os.path.join(self.runtime, name) for name in self.sources if (name in floats) == single]
         made = os.path.join(work, 'runtime.o')

@@ -4,16 +4,16 @@
 #define REAL_IS_FLOAT
 #include "words.h"
 
-pl_turnf pl_turnf_times(pl_turnf a, uint64_t n)
+pl_phasef pl_phasef_times(pl_phasef a, uint64_t n)
 {
     return a * n;
 }
 
-pl_turnf pl_turnf_at(const pl_ratef *rate, float t)
+pl_phasef pl_phasef_at(const pl_ratef *rate, float t)
 {
     int point;
     const words_wide turns = words_rate_times(rate, t, &point);
-    const pl_turnf a = words_rounded(&turns, point - 64).lo; /* bit `point` is worth a turn */
+    const pl_phasef a = words_rounded(&turns, point - 64).lo; /* bit `point` is worth a turn */
     return t < 0 ? 0u - a : a;
 }
 
@@ -44,7 +44,7 @@ static float scaled(uint32_t m, int power)
     return (float)m * unit.value;
 }
 
-void pl_cossinf(pl_turnf a, float z[2])
+void pl_cossinf(pl_phasef a, float z[2])
 {
     const uint32_t half_pi = 0xC90FDAA2; /* pi/2 2^31 */
     const int quarter = (int)((a + ((uint64_t)1 << 61)) >> 62); /* the nearest; 4 wraps to 0 */

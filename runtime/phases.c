@@ -3,21 +3,21 @@
  * turns does not lose accuracy with time, as w*t in radians does. */
 #include "words.h"
 
-pl_turn pl_turn_times(pl_turn a, uint64_t n)
+pl_phase pl_phase_times(pl_phase a, uint64_t n)
 {
     const words_pair p = words_product(a.lo, n);
-    pl_turn m;
+    pl_phase m;
     m.lo = p.lo;
     m.hi = p.hi + a.hi * n;
     return m;
 }
 
-pl_turn pl_turn_at(const pl_rate *rate, double t)
+pl_phase pl_phase_at(const pl_rate *rate, double t)
 {
     int point;
     const words_wide turns = words_rate_times(rate, t, &point);
     words_pair p = words_rounded(&turns, point - 128); /* bit `point` is worth a turn */
-    pl_turn a;
+    pl_phase a;
     if (t < 0.0) {
         p = words_negative(p);
     }
@@ -60,7 +60,7 @@ static double sum(uint64_t m, double unit, double rest)
 
 /* The large terms, r - r^3/6 and 1 - r^2/2, in integers of 63 bits; the small rest in doubles, where no rounding of
  * them can be seen. */
-void pl_cossin(pl_turn a, double z[2])
+void pl_cossin(pl_phase a, double z[2])
 {
     const uint64_t half_pi = 0xC90FDAA22168C235; /* pi/2 2^63 */
     const uint64_t sixth = 0x2AAAAAAAAAAAAAAB;   /* 2^64/6 */

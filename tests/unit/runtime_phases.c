@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/turns.c against MPFR. */
+/* runtime/phases.c against MPFR. */
 #include "runtime.h"
 
 /* turn(hi, lo) is hi 2^-64 + lo 2^-128 of a turn; a float's ends with hi */
 #ifdef REAL_IS_FLOAT
-#define pl_turn pl_turnf
-#define pl_turn_add pl_turnf_add
-#define pl_turn_times pl_turnf_times
-#define pl_turn_at pl_turnf_at
+#define pl_phase pl_phasef
+#define pl_phase_add pl_phasef_add
+#define pl_phase_times pl_phasef_times
+#define pl_phase_at pl_phasef_at
 #define pl_cossin pl_cossinf
 enum {
     RATE_WORDS = 2,
@@ -36,73 +36,73 @@ enum {
 #define TURN "%016" PRIx64 " %016" PRIx64
 
 #ifdef REAL_IS_FLOAT
-static pl_turn turn(uint64_t hi, uint64_t lo)
+static pl_phase turn(uint64_t hi, uint64_t lo)
 {
     (void)lo;
     return hi;
 }
 
-static uint64_t high_word(pl_turn a)
+static uint64_t high_word(pl_phase a)
 {
     return a;
 }
 
-static uint64_t low_word(pl_turn a)
+static uint64_t low_word(pl_phase a)
 {
     (void)a;
     return 0;
 }
 #else
-static pl_turn turn(uint64_t hi, uint64_t lo)
+static pl_phase turn(uint64_t hi, uint64_t lo)
 {
-    pl_turn a;
+    pl_phase a;
     a.hi = hi;
     a.lo = lo;
     return a;
 }
 
-static uint64_t high_word(pl_turn a)
+static uint64_t high_word(pl_phase a)
 {
     return a.hi;
 }
 
-static uint64_t low_word(pl_turn a)
+static uint64_t low_word(pl_phase a)
 {
     return a.lo;
 }
 #endif
 
 /* k of the smallest part of a turn, which k = -1 has all bits of */
-static pl_turn units(int k)
+static pl_phase units(int k)
 {
     const uint64_t least = (uint64_t)(int64_t)k;
     return TURN_BITS == 64 ? turn(least, 0) : turn(k < 0 ? UINT64_MAX : 0, least);
 }
 
-static pl_turn minus(pl_turn a)
+static pl_phase minus(pl_phase a)
 {
     const uint64_t lo = 0u - low_word(a);
     return turn(~high_word(a) + (lo == 0), lo);
 }
 
-static pl_turn random_turn(void)
+static pl_phase random_turn(void)
 {
     const uint64_t hi = random_word();
     return turn(hi, random_word());
 }
 
 /* 2^-shift of a turn or less */
-static pl_turn small_turn(int shift)
+static pl_phase small_turn(int shift)
 {
     return shift < 64 ? turn(random_word() >> shift, random_word()) : turn(0, random_word() >> (shift - 64));
 }
 
-static int same_turn(pl_turn a, pl_turn b)
+static int same_turn(pl_phase a, pl_phase b)
 {
     return high_word(a) == high_word(b) && low_word(a) == low_word(b);
 }
 
-static void assert_turn(pl_turn found, pl_turn expected, const char *what)
+static void assert_turn(pl_phase found, pl_phase expected, const char *what)
 {
     if (!same_turn(found, expected))
         fail_msg("%s: found " TURN ", expected " TURN ", exactly", what, high_word(found), low_word(found),
@@ -110,7 +110,7 @@ static void assert_turn(pl_turn found, pl_turn expected, const char *what)
 }
 
 /* a in turns */
-static void set_turn(mpfr_t x, pl_turn a)
+static void set_turn(mpfr_t x, pl_phase a)
 {
     const uint64_t words[2] = {high_word(a), low_word(a)};
     mpz_t z;
@@ -122,7 +122,7 @@ static void set_turn(mpfr_t x, pl_turn a)
 }
 
 /* x mod 1 turn in units of 2^-TURN_BITS turn, rounded to nearest, halves away from 0 */
-static pl_turn turn_of(mpfr_t x)
+static pl_phase turn_of(mpfr_t x)
 {
     mpfr_t y;
     mpz_t z, word;
@@ -145,14 +145,14 @@ static pl_turn turn_of(mpfr_t x)
 
 static void addition_wraps(void **state)
 {
-    const pl_turn quarter = turn((uint64_t)1 << 62, 0), three_quarters = turn((uint64_t)3 << 62, 0);
+    const pl_phase quarter = turn((uint64_t)1 << 62, 0), three_quarters = turn((uint64_t)3 << 62, 0);
     (void)state;
 #ifndef REAL_IS_FLOAT
-    assert_turn(pl_turn_add(turn(0, UINT64_MAX), turn(0, 1)), turn(1, 0), "carry");
+    assert_turn(pl_phase_add(turn(0, UINT64_MAX), turn(0, 1)), turn(1, 0), "carry");
 #endif
-    assert_turn(pl_turn_add(units(-1), units(1)), units(0), "wrap");
-    assert_turn(pl_turn_add(units(-1), units(-1)), units(-2), "wrap with carry");
-    assert_turn(pl_turn_add(pl_turn_add(three_quarters, units(5)), pl_turn_add(quarter, units(6))), units(11),
+    assert_turn(pl_phase_add(units(-1), units(1)), units(0), "wrap");
+    assert_turn(pl_phase_add(units(-1), units(-1)), units(-2), "wrap with carry");
+    assert_turn(pl_phase_add(pl_phase_add(three_quarters, units(5)), pl_phase_add(quarter, units(6))), units(11),
                 "3/4 + 1/4");
 }
 
@@ -161,12 +161,12 @@ static void multiples_are_repeated_additions(void **state)
     int i, n;
     (void)state;
     for (i = 0; i < 200; i++) {
-        const pl_turn a = random_turn();
-        pl_turn sum = units(0);
-        for (n = 0; n < 100; n++, sum = pl_turn_add(sum, a))
-            assert_turn(pl_turn_times(a, (uint64_t)n), sum, "n a");
+        const pl_phase a = random_turn();
+        pl_phase sum = units(0);
+        for (n = 0; n < 100; n++, sum = pl_phase_add(sum, a))
+            assert_turn(pl_phase_times(a, (uint64_t)n), sum, "n a");
     }
-    assert_turn(pl_turn_times(units(-1), UINT64_MAX), TURN_BITS == 64 ? units(1) : turn(UINT64_MAX, 1),
+    assert_turn(pl_phase_times(units(-1), UINT64_MAX), TURN_BITS == 64 ? units(1) : turn(UINT64_MAX, 1),
                 "(-1)(2^64 - 1)");
 }
 
@@ -178,12 +178,12 @@ static void multiples_are_exact(void **state)
     mpfr_init2(x, 200);
     mpfr_init2(n, 64);
     for (i = 0; i < 20000; i++) {
-        const pl_turn a = random_turn();
+        const pl_phase a = random_turn();
         const uint64_t times = random_word() >> (random_word() & 63);
         set_turn(x, a);
         mpfr_set_uj(n, times, MPFR_RNDN);
         mpfr_mul(x, x, n, MPFR_RNDN); /* at most 192 bits: exact */
-        assert_turn(pl_turn_times(a, times), turn_of(x), "n a");
+        assert_turn(pl_phase_times(a, times), turn_of(x), "n a");
     }
     mpfr_clears(x, n, (mpfr_ptr)0);
 }
@@ -195,23 +195,23 @@ static void phase_after_a_thousand_million_steps(void **state)
     const uint64_t steps = 1000000000;
     const double tolerance = ldexp(1.0, 29 - TURN_BITS);
     mpfr_t step, exact, found;
-    volatile pl_turn turn_of_step; /* read anew each time: no compiler multiplies instead */
-    pl_turn a;
+    volatile pl_phase turn_of_step; /* read anew each time: no compiler multiplies instead */
+    pl_phase a;
     (void)state;
     mpfr_inits2(400, step, exact, found, (mpfr_ptr)0);
     mpfr_const_pi(step, MPFR_RNDN);
     mpfr_mul_2ui(step, step, 1, MPFR_RNDN);
     mpfr_d_div(step, 0.05, step, MPFR_RNDN); /* w h = 0.05 */
     turn_of_step = turn_of(step);
-    a = pl_turn_times(turn_of_step, steps);
+    a = pl_phase_times(turn_of_step, steps);
 #ifdef REAL_IS_FLOAT
     {
         const uint64_t additions = (uint64_t)samples((long)steps);
-        pl_turn sum = 0;
+        pl_phase sum = 0;
         uint64_t n;
         for (n = 0; n < additions; n++)
-            sum = pl_turn_add(sum, turn_of_step);
-        assert_turn(sum, pl_turn_times(turn_of_step, additions), "so many additions");
+            sum = pl_phase_add(sum, turn_of_step);
+        assert_turn(sum, pl_phase_times(turn_of_step, additions), "so many additions");
     }
 #endif
     mpfr_mul_ui(exact, step, (unsigned long)steps, MPFR_RNDN);
@@ -243,9 +243,9 @@ static pl_rate random_rate(mpfr_t value, int exponent)
 
 static void assert_turn_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, real t)
 {
-    pl_turn found, expected;
+    pl_phase found, expected;
     mpfr_mul_d(scratch, value, t, MPFR_RNDN); /* at most 245 bits: exact */
-    found = pl_turn_at(rate, t);
+    found = pl_phase_at(rate, t);
     expected = turn_of(scratch);
     if (!same_turn(found, expected))
         fail_msg("rate exponent %d, t = " NUMBER ": found " TURN ", expected " TURN ", exactly", rate->exponent,
@@ -285,15 +285,15 @@ static void phase_at_no_time(void **state)
     const pl_rate hertz = {{(uint64_t)1 << 63}, 64 * RATE_WORDS - 1}, none = {{0}, 0};
     const real half = (real)ldexp(1, -TURN_BITS - 1);
     (void)state;
-    assert_turn(pl_turn_at(&hertz, (real)INFINITY), units(0), "infinite t");
-    assert_turn(pl_turn_at(&hertz, -(real)INFINITY), units(0), "infinite t");
-    assert_turn(pl_turn_at(&hertz, (real)NAN), units(0), "t not a number");
-    assert_turn(pl_turn_at(&none, (real)1e10), units(0), "rate 0");
-    assert_turn(pl_turn_at(&hertz, (real)7.25), turn((uint64_t)1 << 62, 0), "1 Hz after 7.25 s");
-    assert_turn(pl_turn_at(&hertz, -(real)7.25), turn((uint64_t)3 << 62, 0), "1 Hz after -7.25 s");
-    assert_turn(pl_turn_at(&hertz, half), units(1), "half a unit");
-    assert_turn(pl_turn_at(&hertz, -half), units(-1), "half a unit, negative");
-    assert_turn(pl_turn_at(&hertz, half * (1 - REAL_EPSILON / 2)), units(0), "less than half a unit");
+    assert_turn(pl_phase_at(&hertz, (real)INFINITY), units(0), "infinite t");
+    assert_turn(pl_phase_at(&hertz, -(real)INFINITY), units(0), "infinite t");
+    assert_turn(pl_phase_at(&hertz, (real)NAN), units(0), "t not a number");
+    assert_turn(pl_phase_at(&none, (real)1e10), units(0), "rate 0");
+    assert_turn(pl_phase_at(&hertz, (real)7.25), turn((uint64_t)1 << 62, 0), "1 Hz after 7.25 s");
+    assert_turn(pl_phase_at(&hertz, -(real)7.25), turn((uint64_t)3 << 62, 0), "1 Hz after -7.25 s");
+    assert_turn(pl_phase_at(&hertz, half), units(1), "half a unit");
+    assert_turn(pl_phase_at(&hertz, -half), units(-1), "half a unit, negative");
+    assert_turn(pl_phase_at(&hertz, half * (1 - REAL_EPSILON / 2)), units(0), "less than half a unit");
 }
 
 static void quarter_turns_are_exact(void **state)
@@ -312,7 +312,7 @@ static void quarter_turns_are_exact(void **state)
     }
 }
 
-static void assert_pair(const real z[2], real c, real s, pl_turn a, const char *what)
+static void assert_pair(const real z[2], real c, real s, pl_phase a, const char *what)
 {
     if (z[0] != c || z[1] != s)
         fail_msg("%s of " TURN ": found " NUMBER ", " NUMBER ", expected " NUMBER ", " NUMBER ", exactly", what,
@@ -324,17 +324,17 @@ static void symmetric_to_the_last_bit(void **state)
     int i;
     (void)state;
     for (i = 0; i < samples(1000000); i++) { /* anywhere, and beside an eighth */
-        const pl_turn eighth = turn(random_word() << 61, 0), off = small_turn((int)(random_word() % (TURN_BITS - 1)));
-        const pl_turn a = i % 3 == 0 ? random_turn() : pl_turn_add(eighth, i & 1 ? off : minus(off));
-        const pl_turn quarter = turn((uint64_t)1 << 62, 0);
+        const pl_phase eighth = turn(random_word() << 61, 0), off = small_turn((int)(random_word() % (TURN_BITS - 1)));
+        const pl_phase a = i % 3 == 0 ? random_turn() : pl_phase_add(eighth, i & 1 ? off : minus(off));
+        const pl_phase quarter = turn((uint64_t)1 << 62, 0);
         real z[2], y[2];
         pl_cossin(a, z);
         pl_cossin(minus(a), y);
         assert_pair(y, z[0], -z[1], a, "mirror image");
-        pl_cossin(pl_turn_add(a, quarter), y);
+        pl_cossin(pl_phase_add(a, quarter), y);
         assert_pair(y, -z[1], z[0], a, "a quarter turn more");
 #ifdef REAL_IS_FLOAT /* doubles are mirrored about eighths but for the last bit */
-        pl_cossin(pl_turn_add(quarter, minus(a)), y);
+        pl_cossin(pl_phase_add(quarter, minus(a)), y);
         assert_pair(y, z[1], z[0], a, "mirror image about an eighth");
 #endif
     }
@@ -354,7 +354,7 @@ static void one_eighth_is_symmetric(void **state)
 
 static double worst_error; /* in units of the last place */
 
-static void assert_cossin(pl_turn a, mpfr_t angle, mpfr_t c, mpfr_t s, mpfr_t two_pi)
+static void assert_cossin(pl_phase a, mpfr_t angle, mpfr_t c, mpfr_t s, mpfr_t two_pi)
 {
     real z[2];
     int i;
@@ -391,14 +391,14 @@ static void cosine_and_sine(void **state)
     for (i = 0; i < samples(ANGLES); i++)
         assert_cossin(random_turn(), angle, c, s, two_pi);
     for (i = 0; i < samples(ANGLES); i++) { /* from 2^-3 of a turn down to the smallest part beside an eighth */
-        const pl_turn small = small_turn((int)(random_word() % (TURN_BITS - 3)) + 3);
-        assert_cossin(pl_turn_add(turn(random_word() << 61, 0), i & 1 ? small : minus(small)), angle, c, s, two_pi);
+        const pl_phase small = small_turn((int)(random_word() % (TURN_BITS - 3)) + 3);
+        assert_cossin(pl_phase_add(turn(random_word() << 61, 0), i & 1 ? small : minus(small)), angle, c, s, two_pi);
     }
     print_message("# largest error of pl_cossin: %.4f ulp\n", worst_error);
     mpfr_clears(angle, c, s, two_pi, (mpfr_ptr)0);
 }
 
-ROOM(turns,
+ROOM(phases,
     cmocka_unit_test(addition_wraps),
     cmocka_unit_test(multiples_are_repeated_additions),
     cmocka_unit_test(multiples_are_exact),

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* runtime/growth.c against GMP and MPFR. */
+/* runtime/envelope.c against GMP and MPFR. */
 #include "runtime.h"
 
-/* growth(hi, lo) is hi 2^-48 + lo 2^-112; a float's ends with hi */
+/* envelope(hi, lo) is hi 2^-48 + lo 2^-112; a float's ends with hi */
 #ifdef REAL_IS_FLOAT
-#define pl_growth pl_growthf
-#define pl_growth_add pl_growthf_add
-#define pl_growth_times pl_growthf_times
-#define pl_growth_at pl_growthf_at
-#define pl_growth_value pl_growthf_value
+#define pl_envelope pl_envelopef
+#define pl_envelope_add pl_envelopef_add
+#define pl_envelope_times pl_envelopef_times
+#define pl_envelope_at pl_envelopef_at
+#define pl_envelope_value pl_envelopef_value
 enum { RATE_WORDS = 2, GROWTH_BITS = 48, LONGEST = 600, EXPONENTS = 400, SCALES = 120, LEAST_SCALE = -100 };
 enum { FAR_LEAST = 40, FAR_EXPONENTS = 140, STEPS = 1000000000, START = 90 };
 #define TOLERANCE 0.52 /* of a power of 2, in units of the last place */
@@ -21,7 +21,7 @@ enum { FAR_LEAST = -900, FAR_EXPONENTS = 2000, STEPS = 10000000, START = 900 };
 #define OVERFLOW_SLACK 0
 #define NUMBER "%.17g"
 #endif
-#define GROWTH "%016" PRIx64 " %016" PRIx64
+#define ENVELOPE "%016" PRIx64 " %016" PRIx64
 
 /* Exponents of the smallest number, the smallest normal one, and of what is beyond the largest */
 #ifdef REAL_IS_FLOAT
@@ -31,85 +31,85 @@ enum { NORMAL = DBL_MIN_EXP - 1, LEAST = NORMAL - DBL_MANT_DIG + 1, BEYOND = DBL
 #endif
 
 #ifdef REAL_IS_FLOAT
-static pl_growth growth(int64_t hi, uint64_t lo)
+static pl_envelope envelope(int64_t hi, uint64_t lo)
 {
     (void)lo;
     return hi;
 }
 
-static int64_t high_word(pl_growth a)
+static int64_t high_word(pl_envelope a)
 {
     return a;
 }
 
-static uint64_t low_word(pl_growth a)
+static uint64_t low_word(pl_envelope a)
 {
     (void)a;
     return 0;
 }
 
-static const pl_growth most = INT64_MAX, least = INT64_MIN;
+static const pl_envelope most = INT64_MAX, least = INT64_MIN;
 #else
-static pl_growth growth(int64_t hi, uint64_t lo)
+static pl_envelope envelope(int64_t hi, uint64_t lo)
 {
-    pl_growth a;
+    pl_envelope a;
     a.hi = hi;
     a.lo = lo;
     return a;
 }
 
-static int64_t high_word(pl_growth a)
+static int64_t high_word(pl_envelope a)
 {
     return a.hi;
 }
 
-static uint64_t low_word(pl_growth a)
+static uint64_t low_word(pl_envelope a)
 {
     return a.lo;
 }
 
-static const pl_growth most = {INT64_MAX, UINT64_MAX}, least = {INT64_MIN, 0};
+static const pl_envelope most = {INT64_MAX, UINT64_MAX}, least = {INT64_MIN, 0};
 #endif
 
-static pl_growth integer(int k)
+static pl_envelope integer(int k)
 {
-    return growth((int64_t)k * ((int64_t)1 << 48), 0);
+    return envelope((int64_t)k * ((int64_t)1 << 48), 0);
 }
 
 /* k of the smallest part */
-static pl_growth units(int k)
+static pl_envelope units(int k)
 {
-    return GROWTH_BITS == 48 ? growth(k, 0) : growth(k < 0 ? -1 : 0, (uint64_t)(int64_t)k);
+    return GROWTH_BITS == 48 ? envelope(k, 0) : envelope(k < 0 ? -1 : 0, (uint64_t)(int64_t)k);
 }
 
-static pl_growth negated(pl_growth a)
+static pl_envelope negated(pl_envelope a)
 {
-    return growth(-high_word(a) - (low_word(a) != 0), 0u - low_word(a));
+    return envelope(-high_word(a) - (low_word(a) != 0), 0u - low_word(a));
 }
 
 /* any size from the smallest part up, either sign */
-static pl_growth random_growth(void)
+static pl_envelope random_envelope(void)
 {
     const int shift = (int)(random_word() % (GROWTH_BITS + 15));
     const uint64_t hi = random_word() >> 1, lo = random_word();
-    const pl_growth a = shift < 64 ? growth((int64_t)(hi >> shift), lo) : growth(0, lo >> (shift - 64));
+    const pl_envelope a = shift < 64 ? envelope((int64_t)(hi >> shift), lo) : envelope(0, lo >> (shift - 64));
     return random_word() & 1 ? negated(a) : a;
 }
 
-static int same_growth(pl_growth a, pl_growth b)
+static int same_envelope(pl_envelope a, pl_envelope b)
 {
     return high_word(a) == high_word(b) && low_word(a) == low_word(b);
 }
 
-static void assert_growth(pl_growth found, pl_growth expected, const char *what)
+static void assert_envelope(pl_envelope found, pl_envelope expected, const char *what)
 {
-    if (!same_growth(found, expected))
-        fail_msg("%s: found " GROWTH ", expected " GROWTH ", exactly", what, (uint64_t)high_word(found),
+    if (!same_envelope(found, expected))
+        fail_msg("%s: found " ENVELOPE ", expected " ENVELOPE ", exactly", what, (uint64_t)high_word(found),
                  low_word(found), (uint64_t)high_word(expected), low_word(expected));
 }
 
 /* a in units of 2^-GROWTH_BITS */
-static void set_words(mpz_t z, pl_growth a)
+static void set_words(mpz_t z, pl_envelope a)
 {
     mpz_set_si(z, high_word(a));
     if (GROWTH_BITS > 48) {
@@ -119,10 +119,10 @@ static void set_words(mpz_t z, pl_growth a)
 }
 
 /* z 2^-GROWTH_BITS, kept to the range */
-static pl_growth saturated(mpz_t z)
+static pl_envelope saturated(mpz_t z)
 {
     mpz_t bound, word;
-    pl_growth a = least;
+    pl_envelope a = least;
     mpz_inits(bound, word, NULL);
     set_words(bound, most);
     if (mpz_cmp(z, bound) > 0) {
@@ -133,7 +133,7 @@ static pl_growth saturated(mpz_t z)
             mpz_mul_2exp(bound, z, 112 - GROWTH_BITS);
             mpz_fdiv_q_2exp(word, bound, 64);
             mpz_fdiv_r_2exp(bound, bound, 64);
-            a = growth(mpz_get_si(word), mpz_get_ui(bound));
+            a = envelope(mpz_get_si(word), mpz_get_ui(bound));
         }
     }
     mpz_clears(bound, word, NULL);
@@ -147,19 +147,19 @@ static void sums_are_exact_or_saturate(void **state)
     (void)state;
     mpz_inits(x, y, NULL);
     for (i = 0; i < samples(100000); i++) {
-        const pl_growth a = random_growth(), b = random_growth();
+        const pl_envelope a = random_envelope(), b = random_envelope();
         set_words(x, a);
         set_words(y, b);
         mpz_add(x, x, y);
-        assert_growth(pl_growth_add(a, b), saturated(x), "a + b");
+        assert_envelope(pl_envelope_add(a, b), saturated(x), "a + b");
     }
-    assert_growth(pl_growth_add(most, units(1)), most, "most + smallest");
-    assert_growth(pl_growth_add(least, units(-1)), least, "least - smallest");
-    assert_growth(pl_growth_add(most, most), most, "most + most");
-    assert_growth(pl_growth_add(least, least), least, "least + least");
-    assert_growth(pl_growth_add(most, least), units(-1), "most + least");
-    assert_growth(pl_growth_add(negated(pl_growth_add(least, units(2))), units(1)), most, "up to the end");
-    assert_growth(pl_growth_add(pl_growth_add(least, units(1)), units(-1)), least, "down to the end");
+    assert_envelope(pl_envelope_add(most, units(1)), most, "most + smallest");
+    assert_envelope(pl_envelope_add(least, units(-1)), least, "least - smallest");
+    assert_envelope(pl_envelope_add(most, most), most, "most + most");
+    assert_envelope(pl_envelope_add(least, least), least, "least + least");
+    assert_envelope(pl_envelope_add(most, least), units(-1), "most + least");
+    assert_envelope(pl_envelope_add(negated(pl_envelope_add(least, units(2))), units(1)), most, "up to the end");
+    assert_envelope(pl_envelope_add(pl_envelope_add(least, units(1)), units(-1)), least, "down to the end");
     mpz_clears(x, y, NULL);
 }
 
@@ -170,21 +170,21 @@ static void multiples_are_exact_or_saturate(void **state)
     (void)state;
     mpz_init(x);
     for (i = 0; i < samples(100000); i++) {
-        const pl_growth a = random_growth();
+        const pl_envelope a = random_envelope();
         const uint64_t n = random_word() >> (random_word() & 63);
         set_words(x, a);
         mpz_mul_ui(x, x, n);
-        assert_growth(pl_growth_times(a, n), saturated(x), "n a");
+        assert_envelope(pl_envelope_times(a, n), saturated(x), "n a");
     }
-    assert_growth(pl_growth_times(most, 1), most, "1 most");
-    assert_growth(pl_growth_times(least, 1), least, "1 least");
-    assert_growth(pl_growth_times(most, 0), integer(0), "0 most");
-    assert_growth(pl_growth_times(least, 0), integer(0), "0 least");
-    assert_growth(pl_growth_times(most, UINT64_MAX), most, "(2^64 - 1) most");
-    assert_growth(pl_growth_times(least, UINT64_MAX), least, "(2^64 - 1) least");
-    assert_growth(pl_growth_times(integer(-1), 32768), least, "-2^15, which there is");
-    assert_growth(pl_growth_times(integer(1), 32768), most, "2^15, which there is not");
-    assert_growth(pl_growth_times(integer(1), (uint64_t)1 << 48), most, "2^48: one word alone would be 0");
+    assert_envelope(pl_envelope_times(most, 1), most, "1 most");
+    assert_envelope(pl_envelope_times(least, 1), least, "1 least");
+    assert_envelope(pl_envelope_times(most, 0), integer(0), "0 most");
+    assert_envelope(pl_envelope_times(least, 0), integer(0), "0 least");
+    assert_envelope(pl_envelope_times(most, UINT64_MAX), most, "(2^64 - 1) most");
+    assert_envelope(pl_envelope_times(least, UINT64_MAX), least, "(2^64 - 1) least");
+    assert_envelope(pl_envelope_times(integer(-1), 32768), least, "-2^15, which there is");
+    assert_envelope(pl_envelope_times(integer(1), 32768), most, "2^15, which there is not");
+    assert_envelope(pl_envelope_times(integer(1), (uint64_t)1 << 48), most, "2^48: one word alone would be 0");
     mpz_clear(x);
 }
 
@@ -193,19 +193,19 @@ static void multiples_are_repeated_additions(void **state)
     int i, n;
     (void)state;
     for (i = 0; i < 1000; i++) {
-        const pl_growth a = random_growth();
-        pl_growth sum = integer(0);
-        for (n = 0; n < 100; n++, sum = pl_growth_add(sum, a))
-            assert_growth(pl_growth_times(a, (uint64_t)n), sum, "n a");
+        const pl_envelope a = random_envelope();
+        pl_envelope sum = integer(0);
+        for (n = 0; n < 100; n++, sum = pl_envelope_add(sum, a))
+            assert_envelope(pl_envelope_times(a, (uint64_t)n), sum, "n a");
     }
 }
 
 /* value in units of 2^-GROWTH_BITS, rounded to nearest, halves away from 0 */
-static pl_growth growth_of(mpfr_t value)
+static pl_envelope envelope_of(mpfr_t value)
 {
     mpfr_t y;
     mpz_t z;
-    pl_growth a;
+    pl_envelope a;
     mpfr_init2(y, mpfr_get_prec(value));
     mpz_init(z);
     mpfr_mul_2ui(y, value, GROWTH_BITS, MPFR_RNDN);
@@ -237,19 +237,19 @@ static pl_rate random_rate(mpfr_t value, int exponent)
 
 static long inside, beyond; /* how many of the exponents below are not, and are, saturated */
 
-static void assert_growth_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, real t)
+static void assert_envelope_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, real t)
 {
     const int negative = (int)(random_word() & 1);
-    pl_growth found = pl_growth_at(rate, negative, t), expected;
+    pl_envelope found = pl_envelope_at(rate, negative, t), expected;
     mpfr_mul_d(scratch, value, t, MPFR_RNDN); /* at most 245 bits: exact */
     if (negative)
         mpfr_neg(scratch, scratch, MPFR_RNDN);
-    expected = growth_of(scratch);
-    if (!same_growth(found, expected))
-        fail_msg("rate exponent %d, %s, t = " NUMBER ": found " GROWTH ", expected " GROWTH ", exactly", rate->exponent,
-                 negative ? "negative" : "positive", (double)t, (uint64_t)high_word(found), low_word(found),
-                 (uint64_t)high_word(expected), low_word(expected));
-    if (same_growth(expected, most) || same_growth(expected, least))
+    expected = envelope_of(scratch);
+    if (!same_envelope(found, expected))
+        fail_msg("rate exponent %d, %s, t = " NUMBER ": found " ENVELOPE ", expected " ENVELOPE ", exactly",
+                 rate->exponent, negative ? "negative" : "positive", (double)t, (uint64_t)high_word(found),
+                 low_word(found), (uint64_t)high_word(expected), low_word(expected));
+    if (same_envelope(expected, most) || same_envelope(expected, least))
         beyond++;
     else if (high_word(expected) != 0 && high_word(expected) != -1)
         inside++;
@@ -281,15 +281,15 @@ static void exponent_at_any_time(void **state)
         real_parts any;
         any.bits = (real_bits)random_word();
         if (isfinite(any.value)) /* of any size, either sign */
-            assert_growth_at(&rate, value, scratch, any.value);
-        assert_growth_at(&rate, value, scratch, random_time((int)(random_word() % SCALES) + LEAST_SCALE));
-        assert_growth_at(&rate, value, scratch, special[(size_t)i % (sizeof special / sizeof special[0])]);
+            assert_envelope_at(&rate, value, scratch, any.value);
+        assert_envelope_at(&rate, value, scratch, random_time((int)(random_word() % SCALES) + LEAST_SCALE));
+        assert_envelope_at(&rate, value, scratch, special[(size_t)i % (sizeof special / sizeof special[0])]);
         /* about the end of the range and down to 2^-60 */
         rate = random_rate(value, (int)(random_word() % 40) + 64 * RATE_WORDS - 12);
-        assert_growth_at(&rate, value, scratch, random_time((int)(random_word() % 40) - 65));
+        assert_envelope_at(&rate, value, scratch, random_time((int)(random_word() % 40) - 65));
         /* far from it, but the product is not */
         rate = random_rate(value, (int)(random_word() % FAR_EXPONENTS) + FAR_LEAST);
-        assert_growth_at(&rate, value, scratch,
+        assert_envelope_at(&rate, value, scratch,
                          random_time(rate.exponent - 64 * RATE_WORDS - 62 + (int)(random_word() % 20)));
     }
     print_message("# exponents tested: %ld of ordinary size, %ld beyond the range\n", inside, beyond);
@@ -305,24 +305,24 @@ static void exponent_at_special_times(void **state)
     memset(ones.word, 0xff, sizeof ones.word);
     ones.exponent = 64 * RATE_WORDS - 15;
     (void)state;
-    assert_growth(pl_growth_at(&one, 0, infinite), most, "infinite t");
-    assert_growth(pl_growth_at(&one, 1, infinite), least, "infinite t, negative rate");
-    assert_growth(pl_growth_at(&one, 0, -infinite), least, "t = -infinity");
-    assert_growth(pl_growth_at(&none, 0, infinite), integer(0), "infinite t, rate 0");
-    assert_growth(pl_growth_at(&one, 0, (real)NAN), integer(0), "t not a number");
-    assert_growth(pl_growth_at(&one, 1, (real)NAN), integer(0), "t not a number, negative rate");
-    assert_growth(pl_growth_at(&none, 1, (real)1e10), integer(0), "rate 0");
-    assert_growth(pl_growth_at(&one, 0, (real)7.25), growth((int64_t)29 << 46, 0), "7.25");
-    assert_growth(pl_growth_at(&one, 1, (real)7.25), growth(-((int64_t)29 << 46), 0), "-7.25");
-    assert_growth(pl_growth_at(&one, 1, -(real)7.25), growth((int64_t)29 << 46, 0), "7.25 from two signs");
-    assert_growth(pl_growth_at(&one, 0, half), units(1), "half a unit");
-    assert_growth(pl_growth_at(&one, 0, -half), units(-1), "half a unit, negative");
-    assert_growth(pl_growth_at(&one, 0, half * (1 - REAL_EPSILON / 2)), integer(0), "less than half a unit");
-    assert_growth(pl_growth_at(&one, 0, 32767), integer(32767), "the largest integer");
-    assert_growth(pl_growth_at(&one, 0, 32768), most, "2^15");
-    assert_growth(pl_growth_at(&one, 0, -32768), least, "-2^15");
-    assert_growth(pl_growth_at(&ones, 0, 1), most, "rounded up beyond the range");
-    assert_growth(pl_growth_at(&ones, 1, 1), least, "rounded down to its end");
+    assert_envelope(pl_envelope_at(&one, 0, infinite), most, "infinite t");
+    assert_envelope(pl_envelope_at(&one, 1, infinite), least, "infinite t, negative rate");
+    assert_envelope(pl_envelope_at(&one, 0, -infinite), least, "t = -infinity");
+    assert_envelope(pl_envelope_at(&none, 0, infinite), integer(0), "infinite t, rate 0");
+    assert_envelope(pl_envelope_at(&one, 0, (real)NAN), integer(0), "t not a number");
+    assert_envelope(pl_envelope_at(&one, 1, (real)NAN), integer(0), "t not a number, negative rate");
+    assert_envelope(pl_envelope_at(&none, 1, (real)1e10), integer(0), "rate 0");
+    assert_envelope(pl_envelope_at(&one, 0, (real)7.25), envelope((int64_t)29 << 46, 0), "7.25");
+    assert_envelope(pl_envelope_at(&one, 1, (real)7.25), envelope(-((int64_t)29 << 46), 0), "-7.25");
+    assert_envelope(pl_envelope_at(&one, 1, -(real)7.25), envelope((int64_t)29 << 46, 0), "7.25 from two signs");
+    assert_envelope(pl_envelope_at(&one, 0, half), units(1), "half a unit");
+    assert_envelope(pl_envelope_at(&one, 0, -half), units(-1), "half a unit, negative");
+    assert_envelope(pl_envelope_at(&one, 0, half * (1 - REAL_EPSILON / 2)), integer(0), "less than half a unit");
+    assert_envelope(pl_envelope_at(&one, 0, 32767), integer(32767), "the largest integer");
+    assert_envelope(pl_envelope_at(&one, 0, 32768), most, "2^15");
+    assert_envelope(pl_envelope_at(&one, 0, -32768), least, "-2^15");
+    assert_envelope(pl_envelope_at(&ones, 0, 1), most, "rounded up beyond the range");
+    assert_envelope(pl_envelope_at(&ones, 1, 1), least, "rounded down to its end");
 }
 
 /* e^{a t} after 10^9 steps: the only error of the exponent is that of the step's, half a unit, times n. */
@@ -341,7 +341,7 @@ static void exponent_after_a_thousand_million_steps(void **state)
         double off;
         mpfr_const_log2(step, MPFR_RNDN);
         mpfr_d_div(step, rates[i] * 1e-6, step, MPFR_RNDN); /* h = 1e-6 s */
-        set_words(z, pl_growth_times(growth_of(step), steps));
+        set_words(z, pl_envelope_times(envelope_of(step), steps));
         mpfr_set_z(found, z, MPFR_RNDN);
         mpfr_div_2ui(found, found, GROWTH_BITS, MPFR_RNDN);
         mpfr_mul_ui(exact, step, (unsigned long)steps, MPFR_RNDN);
@@ -357,14 +357,14 @@ static void exponent_after_a_thousand_million_steps(void **state)
 /* The same, step by step as generated code goes: the sum after all steps is the multiple. */
 static void additions_do_not_drift(void **state)
 {
-    const volatile pl_growth step = GROWTH_BITS == 48 ? units(-123457) : growth(-1, 0xFFFFFFFF00000001u);
-    pl_growth a = integer(START); /* `step` is read anew each time: no compiler multiplies instead */
+    const volatile pl_envelope step = GROWTH_BITS == 48 ? units(-123457) : envelope(-1, 0xFFFFFFFF00000001u);
+    pl_envelope a = integer(START); /* `step` is read anew each time: no compiler multiplies instead */
     const long steps = samples(STEPS);
     long n;
     (void)state;
     for (n = 0; n < steps; n++)
-        a = pl_growth_add(a, step);
-    assert_growth(a, pl_growth_add(integer(START), pl_growth_times(step, (uint64_t)steps)), "sum of all steps");
+        a = pl_envelope_add(a, step);
+    assert_envelope(a, pl_envelope_add(integer(START), pl_envelope_times(step, (uint64_t)steps)), "sum of all steps");
 }
 
 static void integers_are_exact(void **state)
@@ -372,12 +372,12 @@ static void integers_are_exact(void **state)
     int k;
     (void)state;
     for (k = -32768; k < 32768; k++) {
-        const real found = pl_growth_value(integer(k)), expected = (real)ldexp(1.0, k);
+        const real found = pl_envelope_value(integer(k)), expected = (real)ldexp(1.0, k);
         if (found != expected || signbit(found))
             fail_msg("2^%d: found %.17g, expected %.17g, exactly", k, (double)found, (double)expected);
     }
-    assert_true(isinf(pl_growth_value(most)) && pl_growth_value(most) > 0);
-    assert_true(pl_growth_value(least) == 0);
+    assert_true(isinf(pl_envelope_value(most)) && pl_envelope_value(most) > 0);
+    assert_true(pl_envelope_value(least) == 0);
 }
 
 static double worst_error; /* in units of the last place of the result, subnormal or not */
@@ -397,9 +397,9 @@ static int overflows(mpfr_t exact, double slack)
     return beyond_it;
 }
 
-static void assert_value(pl_growth a, mpfr_t x, mpfr_t exact)
+static void assert_value(pl_envelope a, mpfr_t x, mpfr_t exact)
 {
-    const double found = (double)pl_growth_value(a);
+    const double found = (double)pl_envelope_value(a);
     double error;
     long exponent;
     mpz_t z;
@@ -410,7 +410,7 @@ static void assert_value(pl_growth a, mpfr_t x, mpfr_t exact)
     mpz_clear(z);
     mpfr_exp2(exact, x, MPFR_RNDN);
     if (isinf(found) ? found < 0 || !overflows(exact, -OVERFLOW_SLACK) : overflows(exact, OVERFLOW_SLACK))
-        fail_msg("2^(" GROWTH "): found %.17g, expected %.17g or infinity beside it", (uint64_t)high_word(a),
+        fail_msg("2^(" ENVELOPE "): found %.17g, expected %.17g or infinity beside it", (uint64_t)high_word(a),
                  low_word(a), found, mpfr_get_d(exact, MPFR_RNDN));
     if (isinf(found))
         return;
@@ -422,15 +422,15 @@ static void assert_value(pl_growth a, mpfr_t x, mpfr_t exact)
     if (error > worst_error)
         worst_error = error;
     if (!(error < TOLERANCE) || signbit(found))
-        fail_msg("2^(" GROWTH "): found %.17g, expected %.17g; off by %.17g ulp, tolerance %.17g",
+        fail_msg("2^(" ENVELOPE "): found %.17g, expected %.17g; off by %.17g ulp, tolerance %.17g",
                  (uint64_t)high_word(a), low_word(a), found, mpfr_get_d(exact, MPFR_RNDN), error, TOLERANCE);
 }
 
-static pl_growth between(int low, int high)
+static pl_envelope between(int low, int high)
 {
     const uint64_t span = (uint64_t)(high - low) << 48;
     const uint64_t hi = random_word() % span;
-    return pl_growth_add(integer(low), growth((int64_t)hi, random_word()));
+    return pl_envelope_add(integer(low), envelope((int64_t)hi, random_word()));
 }
 
 static void powers_of_2(void **state)
@@ -448,21 +448,22 @@ static void powers_of_2(void **state)
     for (i = 0; i < samples(200000); i++)
         assert_value(between(LEAST - 3, NORMAL + 1), x, exact); /* subnormal results */
     for (i = 0; i < samples(100000); i++) {
-        const pl_growth edge = integer(edges[(size_t)i % (sizeof edges / sizeof edges[0])]);
+        const pl_envelope edge = integer(edges[(size_t)i % (sizeof edges / sizeof edges[0])]);
         const uint64_t off = random_word() >> (random_word() % 49 + 15);
-        const pl_growth beside = growth((int64_t)off, random_word()), below = pl_growth_add(negated(beside), units(-1));
-        const pl_growth middle =
-            pl_growth_add(edge, growth((int64_t)1 << 47, 0)); /* where the nearest integer changes */
-        assert_value(pl_growth_add(edge, beside), x, exact);
-        assert_value(pl_growth_add(edge, below), x, exact);
-        assert_value(pl_growth_add(middle, beside), x, exact);
-        assert_value(pl_growth_add(middle, below), x, exact);
+        const pl_envelope beside = envelope((int64_t)off, random_word());
+        const pl_envelope below = pl_envelope_add(negated(beside), units(-1));
+        const pl_envelope middle =
+            pl_envelope_add(edge, envelope((int64_t)1 << 47, 0)); /* where the nearest integer changes */
+        assert_value(pl_envelope_add(edge, beside), x, exact);
+        assert_value(pl_envelope_add(edge, below), x, exact);
+        assert_value(pl_envelope_add(middle, beside), x, exact);
+        assert_value(pl_envelope_add(middle, below), x, exact);
     }
-    print_message("# largest error of pl_growth_value: %.5f ulp\n", worst_error);
+    print_message("# largest error of pl_envelope_value: %.5f ulp\n", worst_error);
     mpfr_clears(x, exact, (mpfr_ptr)0);
 }
 
-ROOM(growth,
+ROOM(envelope,
     cmocka_unit_test(sums_are_exact_or_saturate),
     cmocka_unit_test(multiples_are_exact_or_saturate),
     cmocka_unit_test(multiples_are_repeated_additions),

@@ -5,21 +5,21 @@
 #include "words.h"
 
 /* +-magnitude 2^-112, saturated. */
-static pl_growth growth(words_pair magnitude, int negative)
+static pl_envelope envelope(words_pair magnitude, int negative)
 {
     const words_pair m = negative ? words_negative(magnitude) : magnitude;
-    pl_growth a;
+    pl_envelope a;
     if (magnitude.hi >> 63) { /* 2^15 or more; -2^15 itself is what saturation gives */
         a.hi = negative ? INT64_MIN : INT64_MAX;
         a.lo = negative ? 0 : UINT64_MAX;
     } else {
-        a.hi = pl_growth_signed(m.hi);
+        a.hi = pl_envelope_signed(m.hi);
         a.lo = m.lo;
     }
     return a;
 }
 
-pl_growth pl_growth_times(pl_growth a, uint64_t n)
+pl_envelope pl_envelope_times(pl_envelope a, uint64_t n)
 {
     const int negative = a.hi < 0;
     words_pair m, low, high;
@@ -36,10 +36,10 @@ pl_growth pl_growth_times(pl_growth a, uint64_t n)
     if (high.hi != 0) {
         low.hi = UINT64_MAX;
     }
-    return growth(low, negative);
+    return envelope(low, negative);
 }
 
-pl_growth pl_growth_at(const pl_rate *rate, int negative, double t)
+pl_envelope pl_envelope_at(const pl_rate *rate, int negative, double t)
 {
     const double last = 0x1.fffffffffffffp1023;
     int point, i;
@@ -54,7 +54,7 @@ pl_growth pl_growth_at(const pl_rate *rate, int negative, double t)
             m.hi = UINT64_MAX;
         }
     }
-    return growth(m, (negative != 0) != (t < 0.0));
+    return envelope(m, (negative != 0) != (t < 0.0));
 }
 
 /* (e^r - 1 - r - r^2/2)/r^3 for |r| <= ln(2)/2.  Minimax for the error relative to e^r by Remez exchange in 60 digits,
@@ -94,7 +94,7 @@ static double assembled(uint64_t significand, int power)
 
 /* 2^k e^r with k the nearest integer: 1 + r + r^2/2 in integers of 64 bits; the small rest in doubles, where no
  * rounding of it can be seen. */
-double pl_growth_value(pl_growth a)
+double pl_envelope_value(pl_envelope a)
 {
     const uint64_t ln_2 = 0xB17217F7D1CF79AC; /* ln 2 2^64 */
     const int64_t one = (int64_t)1 << 48;     /* of a.hi */

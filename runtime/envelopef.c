@@ -5,7 +5,7 @@
 #include "words.h"
 
 /* +-magnitude 2^-48, saturated */
-static pl_growthf growth(uint64_t magnitude, int negative)
+static pl_envelopef envelope(uint64_t magnitude, int negative)
 {
     if (magnitude >> 63) { /* 2^15 or more; -2^15 itself is what saturation gives */
         return negative ? INT64_MIN : INT64_MAX;
@@ -13,14 +13,14 @@ static pl_growthf growth(uint64_t magnitude, int negative)
     return negative ? -(int64_t)magnitude : (int64_t)magnitude;
 }
 
-pl_growthf pl_growthf_times(pl_growthf a, uint64_t n)
+pl_envelopef pl_envelopef_times(pl_envelopef a, uint64_t n)
 {
     const int negative = a < 0;
     const words_pair m = words_product(negative ? 0u - (uint64_t)a : (uint64_t)a, n);
-    return growth(m.hi != 0 ? UINT64_MAX : m.lo, negative);
+    return envelope(m.hi != 0 ? UINT64_MAX : m.lo, negative);
 }
 
-pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t)
+pl_envelopef pl_envelopef_at(const pl_ratef *rate, int negative, float t)
 {
     const float last = 0x1.fffffep127f;
     int point;
@@ -31,7 +31,7 @@ pl_growthf pl_growthf_at(const pl_ratef *rate, int negative, float t)
         const int above = point + 15 - 64 * i; /* where they begin in word i */
         beyond |= above < 64 && powers.word[i] >> (above > 0 ? above : 0) != 0;
     }
-    return growth(beyond ? UINT64_MAX : m.lo, (negative != 0) != (t < 0));
+    return envelope(beyond ? UINT64_MAX : m.lo, (negative != 0) != (t < 0));
 }
 
 /* 2^f - 1, both in units of 2^-32.  Minimax for the error relative to 2^f by Remez exchange in 50 digits, the
@@ -63,7 +63,7 @@ static float assembled(uint32_t significand, int power)
     return u.value;
 }
 
-float pl_growthf_value(pl_growthf a)
+float pl_envelopef_value(pl_envelopef a)
 {
     const int64_t one = (int64_t)1 << 48;
     const int k = (int)(((uint64_t)a ^ (uint64_t)1 << 63) >> 48) - 32768; /* rounded down */
