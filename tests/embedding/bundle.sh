@@ -150,7 +150,7 @@ bundles 'crossings and loads' "$root/models/gear1.spec"
 bundles 'friction' "$root/models/brake.spec"
 bundles 'impacts' "$root/models/bouncing_ball.spec"
 bundles 'delays' "$root/tests/delays/echo.spec"
-bundles 'tunable' "$root/tests/tunable/changes.spec"
+bundles 'tunable' "$(path_of tests/tunable/changes.spec)"
 bundles 'many instances' "$root/models/quarter_car.spec" --batch
 bundles 'a remainder' "$root/models/beam4.spec" --scheme etdrk4
 bundles 'series' "$root/models/pendulum.spec"
@@ -164,7 +164,7 @@ bundles 'crossings, where it is stiff or not' "$root/tests/series_switching/stop
 
 : >log
 for name in real two add multiply rounded growth point walk words_pair sizes clear found; do
-    for spec in "$root/models/quarter_car_bumps.spec" "$root/tests/tunable/changes.spec"; do
+    for spec in "$root/models/quarter_car_bumps.spec" "$(path_of tests/tunable/changes.spec)"; do
         "$plgen" --bundle --prefix $name -o $name.c "$spec" 2>>log &&
             $run_cc -c $name.c -o named.o >>log 2>&1 || echo "$name" >>log
     done

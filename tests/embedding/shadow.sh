@@ -86,7 +86,7 @@ shadows() {
 shadows 'loads' 15 "$root/models/sdcsf.spec" --rhs --selftest
 shadows 'inputs, changing loads, float' 18 "$(path_of tests/emitted/linear/switched.spec)" --real float
 shadows 'regions' 20 "$root/models/quarter_car_bumps.spec"
-shadows 'tunable' 25 "$root/tests/tunable/changes.spec"
+shadows 'tunable' 25 "$(path_of tests/tunable/changes.spec)"
 shadows 'a remainder of ramps, with nodes' 20 "$root/tests/remainder/ramped.spec" --rhs --scheme nc3
 
 # ---- they do what the model does under another name ----

@@ -128,7 +128,7 @@ looks 'masses in the state' "$root/tests/forms/equal_held.spec" ''
 looks 'momentum kept' "$root/tests/forms/loose.spec" ''
 looks 'momentum kept, compensated' "$root/tests/forms/loose.spec" -DCOMPENSATED --accuracy compensated
 looks 'more than 16 states' "$root/tests/forms/large.spec" ''
-looks 'tunable' "$root/tests/tunable/held.spec" ''
+looks 'tunable' "$(path_of tests/tunable/held.spec)" ''
 looks 'ramps, changing loads' "$(path_of tests/emitted/linear/switched.spec)" ''
 
 # ---- a run ends where it shows ----

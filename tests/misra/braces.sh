@@ -6,6 +6,7 @@ plgen=$1
 root=$(cd "$2" && pwd) || exit 99
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 look="$root/tests/misra/braces.py"
 if ! command -v python3 >/dev/null 2>&1; then
 	skip 'braces' 'python3 is not installed'
@@ -22,7 +23,7 @@ make() {
 	name=$1
 	spec=$2
 	shift 2
-	"$plgen" --prefix "$name" "$@" -o "$name.c" "$root/$spec" 2>said ||
+	"$plgen" --prefix "$name" "$@" -o "$name.c" "$(path_of "$spec")" 2>said ||
 		{ cat said && echo "$name is not made"; } >>log
 }
 : >log

@@ -13,6 +13,7 @@ root=$(cd "$2" && pwd) || exit 99
 part=$3
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 if ! command -v cppcheck >/dev/null 2>&1; then
 	skip 'MISRA C' 'cppcheck is not installed'
 	tap_end
@@ -23,7 +24,7 @@ make() {
 	name=$1
 	spec=$2
 	shift 2
-	"$plgen" --prefix "$name" "$@" -o "$name.c" "$root/$spec" 2>>log || exit 99
+	"$plgen" --prefix "$name" "$@" -o "$name.c" "$(path_of "$spec")" 2>>log || exit 99
 }
 make linear models/sdcsf.spec --fast
 make single models/sdcsf.spec --real float

@@ -24,6 +24,7 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
+awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
 
 list_compilers >compilers
 
@@ -140,7 +141,7 @@ result $? "crossings.c: freestanding"
 
 # ---- expressions as written; what a run that ends early says ----
 
-"$plgen" --explain "$here/bump.spec" 2>&1 | grep '^    switching function' >log
+"$plgen" --explain bump.spec 2>&1 | grep '^    switching function' >log
 printf '    switching function 0: -w + x, breakpoints 0.1, 0.2\n    switching function 1: 3*y, breakpoints 3, 6, 15\n' |
     diff - log >>log 2>&1
 result $? 'bump: sign and scale of switching functions as first written'
@@ -159,7 +160,7 @@ told() {
 }
 printf 'model grows\ncoord x\ninit x = 0.5\nx%s - 4*x + max(x - 1, 0) = 0\nstep 0.5\nscheme exact\n' "''" >grows.spec
 told grows.spec 1000 'the step has left the finite numbers'
-told "$here/chatter.spec" 100 'the step has met more crossings, or needed a longer search for them, than its bound'
+told chatter.spec 100 'the step has met more crossings, or needed a longer search for them, than its bound'
 
 # The comment that explains how an event is found, 25 lines at most, names tables and functions that there are.
 for name in gear1 stick_slip two_masses impact_oscillator; do

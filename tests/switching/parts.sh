@@ -12,16 +12,17 @@ case $plgen in
 esac
 here=$root/tests/switching
 . "${0%/*}/../tap.sh"
+awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
 
 runtime_archive "$root/runtime"
 
-size=$("$plgen" "$here/five.spec" | wc -c)
+size=$("$plgen" five.spec | wc -c)
 [ "$size" -gt 10000 ] && [ "$size" -le 102400 ] ||
     { echo "$size bytes, 102400 at most expected" >log; false; }
 result $? 'five stops: less than 100 KB of C'
 
 # The number of a region is the sum of its parts' shares, each in 0 .. 242 once.
-"$plgen" --explain=json "$here/five.spec" >json 2>log
+"$plgen" --explain=json five.spec >json 2>log
 tr -d ' \n' <json | sed 's/.*"parts":\[//; s/"cost".*//; s/"coordinates"/\n&/g' |
     sed -n 's/.*"regions":\[\([^]]*\).*/\1/p' | sed 's/{"number":\([0-9]*\),"matrix":[0-9]*}/\1/g; s/,/ /g' >shares
 awk '{ split("", next_sums); m = 0
@@ -70,7 +71,7 @@ x'' + 5*deadzone(x - y, -1, 1) = f
 y'' - 5*deadzone(x - y, -1, 1) = 0
 z'' + z + max(z, 0) = f
 EOF
-"$plgen" --explain "$here/drive_free.spec" 2>&1 | grep -c 'independent parts' >log
+"$plgen" --explain drive_free.spec 2>&1 | grep -c 'independent parts' >log
 [ "$(cat log)" = 0 ]
 result $? 'a drive that is free as a whole: no word of parts'
 printf '%s\n' "$stops" "x'' + 5*deadzone(x - y, -1, 1) = f" "y'' - 5*deadzone(x - y, -1, 1) = 0" \
@@ -124,10 +125,10 @@ int main(void)
 		 parts_crossed(&all) > 50 && parts_status(&all) == 0);
 }
 EOF
-"$plgen" --real float -o parts.c "$here/parts.spec" >log 2>&1 &&
+"$plgen" --real float -o parts.c parts.spec >log 2>&1 &&
     for one in x y; do
         [ $one = x ] && others=yz || others=xz
-        sed "/of [$others]\$/d" "$here/parts.spec" |
+        sed "/of [$others]\$/d" parts.spec |
             "$plgen" --real float --prefix part_$one -o part_$one.c - || exit 99
     done >>log 2>&1 &&
     gcc -std=c99 -O1 -Wall -Wextra -Wconversion -Wdouble-promotion -Werror -I"$root/runtime" -I. float.c parts.c \

@@ -13,6 +13,7 @@ esac
 here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"
+awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
 
 runtime_archive "$root/runtime"
 
@@ -30,12 +31,12 @@ turns() {
     done
 }
 
-turns 1 "$here/drive_free.spec" 'a drive with a gap: torque and speed over 10^7 steps'
-turns 2 "$here/three_free.spec" 'three inertias with gaps: momentum over 2 10^5 steps'
+turns 1 drive_free.spec 'a drive with a gap: torque and speed over 10^7 steps'
+turns 2 three_free.spec 'three inertias with gaps: momentum over 2 10^5 steps'
 turns 3 "$root/models/gear3.spec" 'gear3 turning at 100: its meshes as at rest, over 2 10^5 steps'
 
-"$plgen" -o model.c "$here/drive_free.spec" >log 2>&1 &&
-    "$plgen" --prefix by_hand -o by_hand.c "$here/drive_by_hand.spec" >>log 2>&1 &&
+"$plgen" -o model.c drive_free.spec >log 2>&1 &&
+    "$plgen" --prefix by_hand -o by_hand.c drive_by_hand.spec >>log 2>&1 &&
     gcc -std=c99 -O0 $warnings -I"$root/runtime" -I. "$here/turning_by_hand.c" model.c by_hand.c "$archive" -lm \
         -o by_hand >>log 2>&1 &&
     ./by_hand >>log 2>&1
