@@ -49,9 +49,13 @@ derive papers_beam_tip.csv papers_beam_tip.csv fold -v by=h_s,operator -v lists=
 derive quality.csv quality.csv fold -v by=method -v lists=h_over_T,period_elongation_percent,\
 amplitude_decay_percent_per_period,algorithmic_damping_ratio,elongation_size,decay_size
 derive stability_boundary.csv stability_boundary.csv fold -v by=method,branch -v lists=wh,zeta
-for name in energy integrators needs operator_boundary papers_beam_tip quality; do
+for name in energy integrators needs quality; do
 	derive $name.csv $name.csv digits -v to=4
 done
+for name in operator_boundary papers_beam_tip; do
+	derive $name.csv $name.csv digits -v to=3
+done
+derive energy.csv energy.csv same -v in_column=steps
 
 mkdir "$work/pictures"
 # shellcheck disable=SC2016

@@ -140,13 +140,15 @@ set key off
 eval heading
 eval sprintf("set tmargin %g", 1.5 + 1.15*lines_of(found) + 4.4)
 set bmargin 3
-set style fill solid 1 border rgb '#ffffff'
+set style fill solid 1 noborder
+do for [k=1:rows - 1] { set arrow from 0.5,k + 0.5 to cases + 0.5,k + 0.5 nohead front lc rgb '#ffffff' }
+do for [k=1:cases - 1] { set arrow from k + 0.5,0.5 to k + 0.5,rows + 0.5 nohead front lc rgb '#ffffff' }
 legend = \
 	'ok: error below 0.001   exact: nothing left over, ok   poor: below 0.1   wrong: above   div.: diverged   '.\
 	'quit: gave up   ref.: refused'
 set label 1 legend at screen 0.02,screen 0.0 offset 0,1.2 left font ',10' textcolor rgb '#202020'
-plot $cells using 1:2:(0.5):(0.5):3 with boxxyerror lc rgb variable, \
-	$cells using 1:2:4 with labels font ',10' textcolor rgb '#000001'
+plot $areas using 1:3:1:2:($3 - 0.5):($3 + 0.5):4 with boxxyerror lc rgb variable, \
+	$cells using 1:2:3 with labels font ',10' textcolor rgb '#000001'
 eval write
 
 === headline_integrators: headline_integrators.csv narrow
