@@ -18,6 +18,8 @@ struct toolchain {
 	const char *runtime;            /* the folder of plrt.h */
 	const char **source;            /* the .c files there */
 	size_t sources;
+	struct timespec newest;         /* of the runtime's files */
+	const char *archive;            /* of the runtime, compiled with plrun; NULL: there is none of these files */
 	struct hash key;                /* of all this */
 };
 
@@ -136,16 +138,30 @@ static const char *find_plgen(void)
 	return found;
 }
 
-static const char *find_runtime(void)
+/* And the archive that belongs to it, there or not */
+static void find_runtime(struct toolchain *t)
 {
 	const char *folder = folder_of_program(), *named = getenv("PLGEN_RUNTIME");
-	const char *place[] = { named && *named ? format("%s", named) : NULL,
-				folder ? format("%s/../share/plgen/runtime", folder) : NULL,
-				folder ? format("%s/../runtime", folder) : NULL, PLRUN_RUNTIME, PLRUN_SOURCE_RUNTIME };
+	const char *place[][2] = {
+		{ named && *named ? format("%s", named) : NULL, NULL },
+		{ folder ? format("%s/../share/plgen/runtime", folder) : NULL,
+		  folder ? format("%s/" PLRUN_ARCHIVE_FROM_BIN, folder) : NULL },
+		{ folder ? format("%s/../runtime", folder) : NULL, folder ? format("%s/libplrt.a", folder) : NULL },
+		{ PLRUN_RUNTIME, PLRUN_ARCHIVE },
+		{ PLRUN_SOURCE_RUNTIME, PLRUN_BUILD_ARCHIVE }
+	};
 	for (size_t i = 0; i < sizeof place / sizeof *place; i++)
-		if (place[i] && access(format("%s/plrt.h", place[i]), R_OK) == 0)
-			return place[i];
+		if (place[i][0] && access(format("%s/plrt.h", place[i][0]), R_OK) == 0) {
+			t->runtime = place[i][0];
+			t->archive = place[i][1];
+			return;
+		}
 	fail(WRONG_DATA, "the runtime, plrt.h, is not there; PLGEN_RUNTIME names its folder");
+}
+
+static bool is_later(struct timespec a, struct timespec b)
+{
+	return a.tv_sec > b.tv_sec || (a.tv_sec == b.tv_sec && a.tv_nsec > b.tv_nsec);
 }
 
 static int by_name(const void *a, const void *b)
@@ -172,9 +188,11 @@ static void read_runtime(struct toolchain *t)
 	qsort(name, names, sizeof *name, by_name);
 	t->source = need(calloc(names + 1, sizeof *t->source));
 	for (size_t i = 0; i < names; i++) {
+		struct stat about;
 		char *text = read_whole(name[i], &length);
-		if (!text)
+		if (!text || stat(name[i], &about) != 0)
 			fail(WRONG_DATA, format("cannot read '%s': %s", name[i], strerror(errno)));
+		t->newest = is_later(about.st_mtim, t->newest) ? about.st_mtim : t->newest;
 		hash_text(&t->key, strrchr(name[i], '/'));
 		hash_bytes(&t->key, text, length + 1);
 		free(text);
@@ -203,15 +221,30 @@ static void read_compiler(struct toolchain *t)
 		hash_text(&t->key, t->compiler[i]);
 }
 
+/* The archive serves where it is not older than what it is made of, and no flags ask for another. */
+static void check_archive(struct toolchain *t)
+{
+	struct stat about;
+	const char *flags = getenv("CFLAGS");
+	if (!t->archive || (flags && flags[strspn(flags, " \t\n")]) || access(t->archive, R_OK) != 0 ||
+	    stat(t->archive, &about) != 0 || is_later(t->newest, about.st_mtim)) {
+		t->archive = NULL;
+		return;
+	}
+	hash_bytes(&t->key, &about.st_size, sizeof about.st_size);
+	hash_bytes(&t->key, &about.st_mtim, sizeof about.st_mtim);
+}
+
 struct toolchain *find_tools(void)
 {
 	struct toolchain *t = need(calloc(1, sizeof *t));
 	hash_begin(&t->key);
 	hash_text(&t->key, "plrun " PLRUN_VERSION);
 	t->plgen = find_plgen();
-	t->runtime = find_runtime();
+	find_runtime(t);
 	read_runtime(t);
 	read_compiler(t);
+	check_archive(t);
 	return t;
 }
 
@@ -424,6 +457,8 @@ char *compile(const struct toolchain *t, const struct code *c, bool anew, char *
 	*error = NULL;
 	if (!anew && access(object, R_OK) == 0)
 		return object;
+	if (!anew && t->archive)
+		runtime = format("%s", t->archive);
 	char *work = format("%s/making.XXXXXX", cache_folder());
 	struct unfinished folder = { .path = work, .remove = remove_work };
 	unfinished_begins();

@@ -147,7 +147,7 @@ static int run_once(struct start *s)
 	else if (o->stats)
 		w.stats = &stats;
 	else if (!o->plot || o->output || !isatty(STDOUT_FILENO))
-		w.rows = rows_new(to, m, job.h, every);
+		w.rows = rows_new(to, m, job.h, every, o->raw);
 	if (o->plot && !o->window)
 		w.picture = picture_new(m, job.h, every);
 	error = run_steps(&job, watch_all, &w);

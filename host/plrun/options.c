@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 struct words {                          /* of the command line, and which is next */
 	char **word;
@@ -62,6 +63,7 @@ static void take_psd(struct options *o, const char *value) { read_window(o, valu
 static void take_dark(struct options *o, const char *value) { (void)value; o->look.as.dark = true; }
 static void take_paper(struct options *o, const char *value) { (void)value; o->look.as.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
+static void take_raw(struct options *o, const char *value) { (void)value; o->raw = true; }
 static void take_units(struct options *o, const char *value) { (void)value; o->units = true; }
 static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
 static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
@@ -202,6 +204,7 @@ static const struct row {
 	  take_time },
 	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
 	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
+	{ "raw", NULL, "the rows as doubles in the machine's order of bytes, t and the columns, without names", take_raw },
 	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
 	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x",
 	  take_show },
@@ -439,6 +442,12 @@ static void check(const struct options *o)
 		wrong_usage("standard input is the spec, or the samples");
 	if (!o->input && !o->fit && (o->columns || o->time))
 		wrong_usage(format("%s goes with --input", o->columns ? "--column" : "--time"));
+	const char *no_rows = o->sweep ? "--sweep" : o->fit ? "--fit" : o->stats ? "--stats" : o->window ? "--psd"
+			    : o->chart ? "--chart" : o->page ? "--page" : NULL;
+	if (o->raw && no_rows)
+		wrong_usage(format("--raw is for the rows of one run: %s has none", no_rows));
+	if (o->raw && !o->output && isatty(STDOUT_FILENO))
+		wrong_usage("--raw is not for a terminal: -o FILE");
 	if (o->every == 0)
 		wrong_usage("--every: expected a time above 0");
 	const char *written[] = { o->output, o->plot_file }, *read[] = { o->spec, o->input, o->sweep };

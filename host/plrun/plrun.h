@@ -26,7 +26,7 @@
  *     record.c    a table as samples of the inputs, resampled where its times are not those of the steps
  *     run.c       steps, and what watches them
  *     show.c      which outputs and states are shown, and in which panels
- *     rows.c      the rows of a run as CSV
+ *     rows.c      the rows of a run as CSV, or as doubles
  *     plot.c      ... as a picture
  *     psd.c       ... as power spectral densities
  *     stats.c     ... as a line for each output: final and mean value, rms, extremes
@@ -91,6 +91,7 @@ enum { LONGEST = 32 };                                  /* characters of a numbe
 char *put_shortest(char *to, double value, bool single);/* in as few digits as read back the same; its end, no 0 */
 /* k h: as a decimal where h is one of at most 15 digits, 6 if it is a float */
 char *put_time(char *to, uint64_t k, double h, bool single);
+double time_number(uint64_t k, double h, bool single);  /* what its text reads back as */
 const char *shortest(double value, bool single);        /* on the heap */
 bool read_number(const char *text, double *value);      /* all of it, finite, decimal */
 
@@ -123,7 +124,7 @@ struct options {
 	const char *sweep;                      /* the file, or the first range as it was given; NULL: one run */
 	struct range *range;
 	size_t ranges;                          /* 0: of the file */
-	bool peak, resume, stats, histories, units;
+	bool peak, resume, stats, histories, units, raw;
 	const char *show;                       /* NULL: the outputs */
 	struct look look;
 	const char **fit;                       /* params and initial values, NULL-terminated; NULL: no fit */
@@ -211,7 +212,8 @@ struct code {
 struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
 		      bool quiet, char **error, int *status);
 bool is_tunable(const struct code *c, const char *name);
-/* The C as a shared object: its path in the cache, compiled when it is not there.  NULL: *error */
+/* The C as a shared object: its path in the cache, compiled when it is not there.  NULL: *error.  anew: always, and
+ * without what was compiled with plrun */
 char *compile(const struct toolchain *t, const struct code *c, bool anew, char **error);
 /* What its C is made of, for a key */
 void hash_tools(const struct toolchain *t, struct hash *h);
@@ -357,7 +359,8 @@ char *run_steps(const struct job *job, watch *each, void *who);
 /* ---- rows.c, plot.c: what watches a run ---- */
 
 struct rows;
-struct rows *rows_new(FILE *to, const struct machine *m, double h, uint64_t every);
+/* raw: as doubles, without the line of names */
+struct rows *rows_new(FILE *to, const struct machine *m, double h, uint64_t every, bool raw);
 watch rows_add;
 void rows_end(struct rows *r);
 

@@ -35,6 +35,23 @@ char *put_time(char *to, uint64_t k, double h, bool single)
 	return put_shortest(to, strtod(text, NULL), false);
 }
 
+/* The quotient of two numbers that doubles hold is what its decimal reads back as. */
+double time_number(uint64_t k, double h, bool single)
+{
+	digits_decimal step = digits_shortest(h, single);
+	const uint64_t whole = UINT64_C(1) << 53;
+	if (step.exponent <= 0 && step.exponent >= -22 && step.digits > 0 && step.digits < (single ? 1000000u : whole) &&
+	    k < whole / step.digits) {
+		double ten = 1;
+		for (int i = step.exponent; i < 0; i++)
+			ten *= 10;
+		return (double)(k * step.digits) / ten;
+	}
+	char text[LONGEST];
+	*put_time(text, k, h, single) = 0;
+	return strtod(text, NULL);
+}
+
 const char *shortest(double value, bool single)
 {
 	char text[LONGEST];

@@ -91,6 +91,26 @@ mkdir beside && ln -s "$PLGEN" beside/plgen && cp "$plrun" beside/plrun
 (unset PLGEN; PATH=/usr/bin:/bin
 	beside/plrun "$models/scs.spec" 0.1 >out.csv 2>log)
 same plain.csv out.csv 'plgen beside plrun'
+cp "$work/tools/my cc" tools/linker && sed -i '$s/.*/exec gcc "$@"/' tools/linker
+# of what stands beside plrun: the library, and what is compiled for its run
+archive() {
+	rm -rf "$XDG_CACHE_HOME"
+	before=$(compiled)
+	(unset PLGEN PLGEN_RUNTIME CFLAGS; CC=$work/tools/linker beside/plrun "$models/scs.spec" 0.1 >out.csv 2>>log) &&
+		[ "$(compiled)" -eq $((before + $1)) ] && cmp plain.csv out.csv >>log 2>&1
+}
+mkdir -p objects && (cd objects && for c in ../runtime/*.c; do gcc -fPIC -c -I../runtime "$c"; done &&
+	ar rc ../beside/libplrt.a ./*.o)
+archive 1
+result $? 'a runtime that is compiled beforehand is linked'
+touch runtime/turns.c
+archive 2
+result $? '... not where it is older than its sources'
+: >beside/libplrt.a
+archive 3
+result $? '... and compiled where it does not link'
+rm beside/libplrt.a
+
 cp -r runtime later && sed -i 's/PL_MODEL_VERSION = [0-9]*/PL_MODEL_VERSION = 99/' later/plrt.h
 PLGEN_RUNTIME=$work/later run "$models/scs.spec" 0.1 >out.csv
 [ $? -eq 1 ] && grep -q 'its descriptor has version 99, and this plrun reads version [0-9]*$' said && [ ! -s out.csv ]

@@ -80,6 +80,8 @@ refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one ra
 $usage" swing.spec 1 --sweep s.csv --plot
 refuses 'statistics of a sweep' 2 "plrun: error: --stats is of one run; a line of a sweep has them of its own
 $usage" swing.spec 1 --sweep s.csv --stats
+refuses 'a sweep in binary' 2 "plrun: error: --raw is for the rows of one run: --sweep has none
+$usage" swing.spec 1 --sweep s.csv --raw
 refuses 'a picture of nothing' 2 "plrun: error: --dark is of a picture: --plot FILE draws it
 $usage" swing.spec 1 --dark
 refuses 'the size of a window' 2 "plrun: error: --size is of a picture in a file: --plot FILE.svg

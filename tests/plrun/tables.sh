@@ -29,6 +29,15 @@ run two.spec --input plain.csv >plain_out.csv
 [ "$(wc -l <plain_out.csv)" -eq 82 ]
 result $? 'a run to the end of the record'
 
+run two.spec --input plain.csv --raw -o rows.bin && od -An -v -tf8 -w24 rows.bin >rows
+sed '1d; y/,/ /' plain_out.csv | paste -d ' ' - rows |
+	awk '$1 != $4 || $2 != $5 || $3 != $6 { print; bad = 1 } END { exit bad || NR != 81 }' >>log
+result $? '--raw: the numbers that the rows have as text, read by od'
+run two.spec --input plain.csv --real float --raw --every 0.03 --show y | od -An -v -tf8 -w16 >rows
+run two.spec --input plain.csv --real float --every 0.03 --show y | sed '1d; y/,/ /' | paste -d ' ' - rows |
+	awk '{ d = $2 - $4 } $1 != $3 || d * d > 1e-14 * $2 * $2 { print; bad = 1 } END { exit bad || NR != 27 }' >>log
+result $? '... of a model in float as doubles'
+
 awk '{ print $2 "," $3 }' numbers >bare.csv
 written 'no names: the order of the model' bare.csv
 (echo push,road; awk '{ print $3 "," $2 }' numbers) >swapped.csv
