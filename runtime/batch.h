@@ -9,6 +9,7 @@
  *     PL_GROUPS                      of lanes, that step in turns: sums of one wait for none of their own
  *     PL_SHARED                      numbers of a step that instances share: `now`
  *     PL_FACTORS, PL_LANES           that params decide: of an instance; of these those that lanes read
+ *     PL_RAMPS                       whether there is PL(hold)
  *
  *     PL(factor_at)[PL_FACTORS]               where in PL_TYPE each is
  *     PL(share_step)(s, u, now)               what a step reads of what instances share, which takes the step
@@ -582,5 +583,66 @@ void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
         out = out ? out + ahead.steps * PL_OUTPUTS * b->count : NULL;
     }
 }
+
+#if PL_FACTORS > 0
+/* ---- NAME_many, by which programs step instances of any model ---- */
+
+static void PL(many_init)(void *to, size_t count, real *y, real *factors, real *peak)
+{
+    PL_INSTANCES *const b = (PL_INSTANCES *)to;
+    b->count = count;
+    b->y = y;
+    b->factors = factors;
+    b->peak = peak;
+    PL(batch_init)(b);
+}
+
+#if PL_RAMPS
+static void PL(many_hold)(void *b, const real *u)
+{
+    PL(hold)(&((PL_INSTANCES *)b)->shared, u);
+}
+#endif
+
+/* What all share is as an instance alone has it: a step of so many seconds as h says, where the spec's is exact. */
+static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
+{
+    PL_INSTANCES *const b = (PL_INSTANCES *)to;
+    PL(coeffs) c = PL(nominal);
+    PL_TYPE one;
+    int status = PL(retune)(&c, params, c.h);
+    if (status == 0) {
+        status = PL(batch_use)(b, j, &c);
+    }
+    if (status == 0) {
+        PL(batch_read)(b, j, &one);
+        PL(use)(&one, &c);
+        PL(out)(&one, out);
+        PL(use)(&b->shared, &c);
+    }
+    return status;
+}
+
+static void PL(many_run)(void *b, size_t n, const real *u, real *out)
+{
+    (void)u;
+    PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
+}
+
+static int PL(many_status)(const void *b, size_t j)
+{
+    return PL(batch_status)((const PL_INSTANCES *)b, j);
+}
+
+const pl_many PL(many) = {
+    sizeof(PL_INSTANCES), PL_ROWS, PL_FACTORS, PL(many_init),
+#if PL_RAMPS
+    PL(many_hold),
+#else
+    NULL,
+#endif
+    PL(many_retune), PL(many_run), PL(many_status)
+};
+#endif
 
 #include "undef.h"

@@ -56,6 +56,7 @@
 #undef pl_lead_start
 #undef pl_magnitude
 #undef pl_derivatives
+#undef pl_many
 #undef pl_model
 #undef pl_multiply
 #undef pl_multiply_add

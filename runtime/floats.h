@@ -56,6 +56,7 @@
 #define pl_lead_start pl_leadf_start
 #define pl_magnitude pl_magnitudef
 #define pl_derivatives pl_derivativesf
+#define pl_many pl_manyf
 #define pl_model pl_modelf
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add

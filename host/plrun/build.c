@@ -314,11 +314,14 @@ static struct code *code_of(char *text)
 struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
 		      bool quiet, char **error, int *status)
 {
-	const char **argv = need(calloc(o->passed_count + 2 * extras + 5, sizeof *argv));
+	const char **argv = need(calloc(o->passed_count + 2 * extras + 7, sizeof *argv));
 	size_t count = 0;
 	struct said said;
 	argv[count++] = t->plgen;
 	argv[count++] = "--fast";
+	argv[count++] = "--rows=1";             /* so that NAME_run has the bits of NAME_step */
+	if (o->sweep)
+		argv[count++] = "--batch";
 	for (size_t i = 0; i < o->passed_count; i++)
 		argv[count++] = o->passed[i];
 	for (size_t i = 0; i < extras; i++) {

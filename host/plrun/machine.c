@@ -115,6 +115,8 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 	void *allowed = find(m, name, "allowed");
 	memcpy(&m->allowed, &allowed, sizeof allowed);
 	memcpy(&m->allowedf, &allowed, sizeof allowed);
+	m->many = find(m, name, "many");
+	m->manyf = (const void *)m->many;
 	void *crossed = find(m, name, "crossed");
 	memcpy(&m->crossed, &crossed, sizeof crossed);
 	m->units = find(m, name, "units");
@@ -197,8 +199,10 @@ struct instance *instance_new(const struct machine *m)
 	i->machine = m;
 	i->state = need(calloc(1, m->size));
 	i->all = need(calloc((size_t)(m->own_outputs + m->states) + 1, sizeof *i->all));
+	most = most > m->params ? most : m->params;
 	if (m->single)
-		i->narrow = need(calloc((size_t)(most > m->params ? most : m->params) + 1, sizeof(float)));
+		i->narrow = need(calloc((size_t)most + STEPS_AT_ONCE * (size_t)(m->inputs + m->own_outputs) + 1,
+					sizeof(float)));
 	if (m->derivatives)
 		begin_derivatives(i);
 	else if (m->single)
@@ -261,6 +265,19 @@ void instance_step(struct instance *i, const double *u)
 		m->modelf->step(i->state, narrow);
 	else
 		m->model->step(i->state, m->inputs ? u : NULL);
+}
+
+void instance_run(struct instance *i, size_t n, const double *u, double *out)
+{
+	const struct machine *m = i->machine;
+	if (!m->single) {
+		m->model->run(i->state, n, m->inputs ? u : NULL, out);
+		return;
+	}
+	const size_t inputs = n * (size_t)m->inputs, outputs = n * (size_t)m->outputs;
+	m->modelf->run(i->state, n, m->inputs ? narrowed(i, u, (int)inputs) : NULL, i->narrow + inputs);
+	for (size_t k = 0; k < outputs; k++)
+		out[k] = (double)i->narrow[inputs + k];
 }
 
 static void own_out(struct instance *i, double *out)

@@ -25,6 +25,7 @@
  *     table.c     CSV as spreadsheets write it, a line at a time, with places
  *     record.c    a table as samples of the inputs, resampled where its times are not those of the steps
  *     run.c       steps, and what watches them
+ *     lanes.c     ... of runs that differ in tunable params, side by side
  *     show.c      which outputs and states are shown, and in which panels
  *     rows.c      the rows of a run as CSV, or as doubles
  *     plot.c      ... as a picture
@@ -231,6 +232,8 @@ struct machine {
 	void (*allowedf)(const void *s, float *y);
 	const pl_derivatives *derivatives;      /* NULL: it has none; of a model in float its pl_derivativesf */
 	const pl_derivativesf *derivativesf;
+	const pl_many *many;                    /* NULL: runs do not go side by side; in float its pl_manyf */
+	const pl_manyf *manyf;
 	const char *name;
 	int states, inputs, outputs, params;    /* outputs: those that are shown */
 	int plain_outputs, own_outputs;         /* of the model; with their derivatives behind them */
@@ -283,6 +286,9 @@ void instance_free(struct instance *i);
 const char *instance_retune(struct instance *i, const double *params, double h);    /* NULL, or what is wrong */
 void instance_hold(struct instance *i, const double *u);
 void instance_step(struct instance *i, const double *u);
+/* n steps, of u a row for each, of out too; n <= STEPS_AT_ONCE, and outputs are the model's own */
+void instance_run(struct instance *i, size_t n, const double *u, double *out);
+enum { STEPS_AT_ONCE = 64 };                    /* so that their rows stay in a cache */
 void instance_out(struct instance *i, double *out);
 void instance_get(struct instance *i, double *y);
 void instance_allowed(struct instance *i, double *y);   /* where the machine has it */
@@ -340,6 +346,27 @@ void record_say(const struct record *r, double h);      /* that it is resampled,
 /* Sample k; *near is where the last one was found, 0 at first */
 void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, size_t *near, double *u);
 
+/* ---- stats.c ---- */
+
+struct output_stats {
+	double last, least, most, peak;         /* peak: the largest |value| */
+	long double sum, squares;               /* so that squares of large values stay finite */
+	uint64_t peak_at;                       /* the first row that has it */
+};
+struct stats {                          /* of a run */
+	int outputs;
+	uint64_t rows;
+	struct output_stats *of;                        /* per output */
+};
+struct stats stats_new(int outputs);
+/* What a line of a sweep has, last value, squares and peak, of `rows` values of an output, from row k on, each `apart`
+ * entries behind the one before; stats_add has all */
+void stats_column(struct stats *s, int output, uint64_t k, size_t rows, const double *value, size_t apart);
+void stats_add(void *who, uint64_t k, const double *out);
+double stats_rms(const struct stats *s, int output);
+/* crossed: breakpoints; it counts where the machine counts them */
+void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed);
+
 /* ---- run.c ---- */
 
 struct job {
@@ -355,6 +382,18 @@ struct job {
 char *plan_run(struct job *job);                        /* NULL, or why not */
 typedef void watch(void *who, uint64_t k, const double *out);  /* after step k, and at k = 0 */
 char *run_steps(const struct job *job, watch *each, void *who);
+
+struct samples;                                 /* of inputs, step by step */
+/* hold: is called with what comes before the first step */
+struct samples *samples_begin(const struct job *job, void (*hold)(void *who, const double *u), void *who);
+const double *samples_rows(struct samples *s, size_t steps);    /* those of the next steps; at most STEPS_AT_ONCE */
+void samples_end(struct samples *s);
+
+/* ---- lanes.c ---- */
+
+bool machine_has_lanes(const struct machine *m);
+/* A run like the job for each set of params, to `stats`; done: false where it takes a run alone to say what is wrong */
+void lanes_run(const struct job *job, size_t count, const double *const *params, struct stats *stats, bool *done);
 
 /* ---- rows.c, plot.c: what watches a run ---- */
 
@@ -397,24 +436,6 @@ struct psd *psd_new(const struct machine *m, const struct options *o, double h, 
 watch psd_add;
 void psd_print(FILE *to, const struct psd *p, const struct options *o);
 void psd_draw(const struct psd *p, const struct options *o);
-
-/* ---- stats.c ---- */
-
-struct output_stats {
-	double last, least, most, peak;         /* peak: the largest |value| */
-	long double sum, squares;               /* so that squares of large values stay finite */
-	uint64_t peak_at;                       /* the first row that has it */
-};
-struct stats {                          /* of a run */
-	int outputs;
-	uint64_t rows;
-	struct output_stats *of;                        /* per output */
-};
-struct stats stats_new(int outputs);
-void stats_add(void *who, uint64_t k, const double *out);
-double stats_rms(const struct stats *s, int output);
-/* crossed: breakpoints; it counts where the machine counts them */
-void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed);
 
 /* ---- fit.c, fitted.c ---- */
 
@@ -466,7 +487,8 @@ struct workers {
 struct sweep;
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
 	      FILE *to, struct workers w);              /* exit status */
-char *sweep_line(struct sweep *s, size_t row);          /* computed, by any thread; ends with a newline */
+/* Computed, by any thread; each ends with a newline */
+void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line);
 
 struct journal;
 struct journal *journal_open(const char *key, bool resume, size_t rows, char **line); /* line: those that are done */

@@ -39,36 +39,57 @@ char *plan_run(struct job *job)
 	return NULL;
 }
 
-/* The rows of the record that a step reads: `most_ahead` + 1 of them, the newest last */
-struct window {
+/* Of the record the rows that a step reads, `most_ahead` + 1 of them, the newest last; samples as steps take them */
+struct samples {
 	const struct job *job;
 	double *row, *u;
 	uint64_t next;
 	size_t near;
 };
 
-static void take_sample(struct window *w)
+static void take_sample(struct samples *s, double *u)
 {
-	const struct machine *m = w->job->machine;
+	const struct machine *m = s->job->machine;
 	size_t n = (size_t)m->inputs, most = (size_t)m->most_ahead;
-	memmove(w->row, w->row + n, sizeof *w->row * most * n);
-	record_sample(w->job->record, w->job->h, !w->job->resampled, w->next++, &w->near, w->row + most * n);
+	memmove(s->row, s->row + n, sizeof *s->row * most * n);
+	record_sample(s->job->record, s->job->h, !s->job->resampled, s->next++, &s->near, s->row + most * n);
 	for (size_t i = 0; i < n; i++)
-		w->u[i] = w->row[(size_t)m->ahead[i] * n + i];
+		u[i] = s->row[(size_t)m->ahead[i] * n + i];
 }
 
 /* The samples before the first step: row 0 of a ramp is its value at t = 0. What is held has its own there. */
-static void begin_samples(struct window *w, struct instance *s)
+struct samples *samples_begin(const struct job *job, void (*hold)(void *who, const double *u), void *who)
 {
-	const struct machine *m = w->job->machine;
+	const struct machine *m = job->machine;
 	size_t n = (size_t)m->inputs;
+	struct samples *s = need(calloc(1, sizeof *s));
+	s->job = job;
+	s->row = need(calloc(((size_t)m->most_ahead + 1) * n + 1, sizeof *s->row));
+	s->u = need(calloc(STEPS_AT_ONCE * n + 1, sizeof *s->u));
+	if (!job->record || job->steps + (uint64_t)m->most_ahead == 0)
+		return s;
 	for (int k = 0; k < m->most_ahead; k++) {
-		take_sample(w);
+		take_sample(s, s->u);
 		for (size_t i = 0; i < n; i++)
 			if (m->ahead[i] == 0)
-				w->u[i] = w->row[(size_t)m->most_ahead * n + i];
-		instance_hold(s, w->u);
+				s->u[i] = s->row[(size_t)m->most_ahead * n + i];
+		hold(who, s->u);
 	}
+	return s;
+}
+
+const double *samples_rows(struct samples *s, size_t steps)
+{
+	for (size_t k = 0; s->job->record && k < steps; k++)
+		take_sample(s, s->u + k * (size_t)s->job->machine->inputs);
+	return s->u;
+}
+
+void samples_end(struct samples *s)
+{
+	free(s->row);
+	free(s->u);
+	free(s);
 }
 
 static char *status_text(int status, double t, bool single)
@@ -197,36 +218,78 @@ static void report(const struct job *job, uint64_t k)
 	progress(line);
 }
 
-static char *take_steps(const struct job *job, struct instance *s, struct window *w, double *out, watch *each,
-			void *who)
+/* A run under way: `out` has room for the rows of some steps, `kept` for the state before them */
+struct course {
+	const struct job *job;
+	struct instance *s;
+	double *out;
+	void *kept;
+	watch *each;
+	void *who;
+	struct sizes sizes;
+	unsigned doubt;
+};
+
+static char *take_step(struct course *c, uint64_t k, const double *u)
 {
-	struct sizes sizes = sizes_new(job);
-	const bool starts_at_zero = job->reported && is_at_zero(job, s);
+	const struct job *job = c->job;
+	instance_step(c->s, u);
+	if (job->reported)
+		report_doubt(c->s, &c->doubt, job->machine->single);
+	int status = instance_status(c->s);
+	take_sizes(&c->sizes, job, c->s, k);
+	if (status)
+		return status_text(status, instance_time(c->s), job->machine->single);
+	instance_out(c->s, c->out);
+	c->each(c->who, k, c->out);
+	report(job, k);
+	return NULL;
+}
+
+/* What is wrong after some steps was so after one of them, which those before show where they are taken singly. */
+static char *take_block(struct course *c, uint64_t k, size_t n, const double *u)
+{
+	const struct machine *m = c->job->machine;
 	char *error = NULL;
-	unsigned doubt = 0;
-	instance_out(s, out);
-	each(who, 0, out);
-	for (uint64_t k = 1; k <= job->steps && !error; k++) {
-		if (job->record)
-			take_sample(w);
-		instance_step(s, w->u);
-		if (job->reported)
-			report_doubt(s, &doubt, job->machine->single);
-		int status = instance_status(s);
-		take_sizes(&sizes, job, s, k);
-		if (status) {
-			error = status_text(status, instance_time(s), job->machine->single);
-			continue;
-		}
-		instance_out(s, out);
-		each(who, k, out);
-		report(job, k);
+	memcpy(c->kept, c->s->state, m->size);
+	instance_run(c->s, n, u, c->out);
+	if (instance_status(c->s)) {
+		memcpy(c->s->state, c->kept, m->size);
+		for (size_t i = 0; i < n && !error; i++)
+			error = take_step(c, k + i, u + i * (size_t)m->inputs);
+		return error;
 	}
-	report_sizes(&sizes, job->machine);
-	if (!error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, s))
+	for (size_t i = 0; i < n; i++) {
+		c->each(c->who, k + i, c->out + i * (size_t)m->outputs);
+		report(c->job, k + i);
+	}
+	return NULL;
+}
+
+/* Where nobody looks at more than the outputs */
+static size_t steps_at_once(const struct course *c)
+{
+	return c->s->derivatives || c->sizes.y || c->job->machine->shown ? 1 : STEPS_AT_ONCE;
+}
+
+static char *take_steps(struct course *c, struct samples *samples)
+{
+	const struct job *job = c->job;
+	const size_t most = steps_at_once(c);
+	const bool starts_at_zero = job->reported && is_at_zero(job, c->s);
+	char *error = NULL;
+	size_t n;
+	instance_out(c->s, c->out);
+	c->each(c->who, 0, c->out);
+	for (uint64_t k = 1; k <= job->steps && !error; k += n) {
+		n = job->steps - k < most ? (size_t)(job->steps - k) + 1 : most;
+		const double *u = samples_rows(samples, n);
+		error = n > 1 ? take_block(c, k, n, u) : take_step(c, k, u);
+	}
+	report_sizes(&c->sizes, job->machine);
+	if (!error && starts_at_zero && job->steps > 0 && !job->record && is_at_zero(job, c->s))
 		say_note("nothing starts and nothing drives the model, so every state has stayed 0: give it an initial "
 			 "value (init x = 1) or a load");
-	free(sizes.y);
 	return error;
 }
 
@@ -248,28 +311,32 @@ static char *tuning_error(const struct job *job, struct instance *s)
 	return error ? error : format("%s", wrong);
 }
 
+static void hold_sample(void *who, const double *u)
+{
+	instance_hold(who, u);
+}
+
 char *run_steps(const struct job *job, watch *each, void *who)
 {
 	const struct machine *m = job->machine;
 	struct instance *s = instance_new(m);
-	size_t n = (size_t)m->inputs;
-	struct window w = { .job = job };
-	double *out = need(malloc(sizeof *out * (size_t)(m->outputs + 1)));
-	w.row = need(calloc(((size_t)m->most_ahead + 1) * n + 1, sizeof *w.row));
-	w.u = need(calloc(n + 1, sizeof *w.u));
+	struct course c = { .job = job, .s = s, .each = each, .who = who };
 	char *error = job->params ? tuning_error(job, s) : NULL;
 	if (!error) {
+		c.sizes = sizes_new(job);
+		c.out = need(malloc(sizeof *c.out * STEPS_AT_ONCE * (size_t)(m->outputs + 1)));
+		c.kept = need(malloc(m->size));
 		if (job->offset)
 			instance_move(s, job->offset);
-		if (job->record && job->steps + (uint64_t)m->most_ahead > 0)
-			begin_samples(&w, s);
-		error = take_steps(job, s, &w, out, each, who);
+		struct samples *samples = samples_begin(job, hold_sample, s);
+		error = take_steps(&c, samples);
+		samples_end(samples);
 		if (job->crossed && m->crossed)
 			*job->crossed = m->crossed(s->state);
 	}
-	free(w.row);
-	free(w.u);
-	free(out);
+	free(c.sizes.y);
+	free(c.out);
+	free(c.kept);
 	instance_free(s);
 	return error;
 }

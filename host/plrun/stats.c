@@ -11,23 +11,33 @@ struct stats stats_new(int outputs)
 	return (struct stats){ outputs, 0, need(calloc((size_t)outputs + 1, sizeof(struct output_stats))) };
 }
 
+void stats_column(struct stats *stats, int output, uint64_t k, size_t rows, const double *value, size_t apart)
+{
+	struct output_stats *s = &stats->of[output];
+	long double squares = s->squares;
+	double peak = k == 0 ? fabs(value[0]) : s->peak;
+	for (size_t i = 0; i < rows; i++) {
+		const double now = value[i * apart], size = fabs(now);
+		squares += (long double)now * (long double)now;
+		if (size > peak) {
+			peak = size;
+			s->peak_at = k + i;
+		}
+	}
+	s->squares = squares;
+	s->peak = peak;
+	s->last = value[(rows - 1) * apart];
+}
+
 void stats_add(void *who, uint64_t k, const double *out)
 {
 	struct stats *stats = who;
 	for (int i = 0; i < stats->outputs; i++) {
 		struct output_stats *s = &stats->of[i];
-		const double size = fabs(out[i]);
-		s->last = out[i];
+		stats_column(stats, i, k, 1, out + i, 1);
 		s->sum += (long double)out[i];
-		s->squares += (long double)out[i] * (long double)out[i];
-		if (k == 0 || out[i] < s->least)
-			s->least = out[i];
-		if (k == 0 || out[i] > s->most)
-			s->most = out[i];
-		if (k == 0 || size > s->peak) {
-			s->peak = size;
-			s->peak_at = k;
-		}
+		s->least = k == 0 || out[i] < s->least ? out[i] : s->least;
+		s->most = k == 0 || out[i] > s->most ? out[i] : s->most;
 	}
 	stats->rows = k + 1;
 }

@@ -311,13 +311,21 @@ static double *params_of(const struct sweep *s, size_t row, const struct machine
 	return params;
 }
 
+/* Of a job all but what stands in its row; NULL, or why there is none */
+static char *plan_row(const struct sweep *s, size_t row, const struct machine *m, struct job *job, double **params)
+{
+	*job = (struct job){ .machine = m, .record = s->record, .until = s->options->until };
+	*params = params_of(s, row, m, &job->h);
+	job->params = is_tuned(s) ? *params : NULL;
+	return plan_run(job);
+}
+
 /* NULL, or how it went wrong */
 static char *run_row(struct sweep *s, size_t row, const struct machine *m, watch *each, void *who)
 {
-	struct job job = { .machine = m, .record = s->record, .until = s->options->until };
-	double *params = params_of(s, row, m, &job.h);
-	job.params = is_tuned(s) ? params : NULL;
-	char *error = plan_run(&job);
+	struct job job;
+	double *params;
+	char *error = plan_row(s, row, m, &job, &params);
 	if (!error)
 		error = run_steps(&job, each, who);
 	free(params);
@@ -343,20 +351,66 @@ static void print_line(FILE *to, const struct sweep *s, size_t row, const struct
 	putc('\n', to);
 }
 
-char *sweep_line(struct sweep *s, size_t row)
+/* Rows side by side; done: those of which stats are known */
+static void run_rows(struct sweep *s, const size_t *row, size_t count, const struct machine *m, struct stats *stats,
+		     bool *done)
 {
-	struct variant *v = &s->variant[s->variant_of[row]];
-	struct stats stats = stats_new(s->machine->outputs);
+	double **params = need(calloc(count, sizeof *params));
+	struct job job;
+	bool all = true;
+	for (size_t i = 0; i < count; i++) {
+		char *error = plan_row(s, row[i], m, &job, &params[i]);
+		all = all && !error && job.params && job.h == m->h;
+		free(error);
+	}
+	if (all)
+		lanes_run(&job, count, (const double *const *)params, stats, done);
+	for (size_t i = 0; i < count; i++)
+		free(params[i]);
+	free(params);
+}
+
+static char *line_of(struct sweep *s, size_t row, const struct machine *m, struct stats *stats, bool done)
+{
 	size_t length;
-	char *line, *error;
+	char *line, *error = NULL;
 	FILE *to = need(open_memstream(&line, &length));
-	const struct machine *m = take_variant(s, v);
-	error = m ? run_row(s, row, m, stats_add, &stats) : v->error;
-	leave_variant(v);
-	print_line(to, s, row, &stats, error);
+	if (!m)
+		error = s->variant[s->variant_of[row]].error;
+	else if (!done)
+		error = run_row(s, row, m, stats_add, stats);
+	print_line(to, s, row, stats, error);
 	fclose(to);
-	free(stats.of);
 	return line;
+}
+
+/* Rows of one variant */
+static void make_lines(struct sweep *s, const size_t *row, size_t count, char **line)
+{
+	struct variant *v = &s->variant[s->variant_of[row[0]]];
+	struct stats *stats = need(calloc(count, sizeof *stats));
+	bool *done = need(calloc(count, sizeof *done));
+	const struct machine *m = take_variant(s, v);
+	for (size_t i = 0; i < count; i++)
+		stats[i] = stats_new(s->machine->outputs);
+	if (m && count > 1 && machine_has_lanes(m))
+		run_rows(s, row, count, m, stats, done);
+	for (size_t i = 0; i < count; i++) {
+		line[i] = line_of(s, row[i], m, &stats[i], done[i]);
+		leave_variant(v);
+		free(stats[i].of);
+	}
+	free(stats);
+	free(done);
+}
+
+void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line)
+{
+	for (size_t i = 0, n; i < count; i += n) {
+		for (n = 1; i + n < count && s->variant_of[row[i + n]] == s->variant_of[row[i]]; n++)
+			;
+		make_lines(s, row + i, n, line + i);
+	}
 }
 
 /* ---- the runs in a picture, once more: a line keeps none of its rows ---- */

@@ -13,6 +13,8 @@
 #include <mpi.h>
 #endif
 
+enum { LINES_AT_ONCE = 64 };
+
 struct share {
 	struct workers workers;
 	struct sweep *sweep;
@@ -123,23 +125,29 @@ static void hand_over(struct share *s, size_t row, char *line)
 		;
 }
 
+/* As many lines at a time as go side by side, and few enough that all threads have some to the end */
 static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
 {
 #ifdef _OPENMP
 	int threads = jobs ? jobs : omp_get_max_threads();
 #else
+	const int threads = 1;
 	if (jobs > 1)
 		wrong_usage("this plrun was built without OpenMP: one job at a time");
 #endif
+	const size_t each = count / (size_t)threads / 4 + 1, some = each < LINES_AT_ONCE ? each : LINES_AT_ONCE;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
 #endif
-	for (size_t i = 0; i < count; i++) {
-		char *line = sweep_line(s->sweep, own[i]);
+	for (size_t i = 0; i < count; i += some) {
+		const size_t n = count - i < some ? count - i : some;
+		char *line[LINES_AT_ONCE];
+		sweep_lines(s->sweep, own + i, n, line);
+		for (size_t k = 0; k < n; k++)
 #ifdef _OPENMP
 #pragma omp critical(hand_over)
 #endif
-		hand_over(s, own[i], line);
+			hand_over(s, own[i + k], line[k]);
 	}
 }
 

@@ -53,6 +53,39 @@ for row in 3 12 24; do
 	result $? "line $row is the run with its params"
 done
 
+# ---- side by side: each has the digits of its run alone, --stats ----
+cat >forced.spec <<'X'
+model forced
+param k = 100, c = 0.4
+tunable k, c
+coord x, y
+input u hold first
+x'' + c*(2*x' - y') + k*(2*x - y) = cos(5*t) + u
+y'' + c*(y' - x') + k*(y - x) = 0
+init x = 0.01
+output x, acc = y'', thrust = k*x + u
+step 0.01
+X
+sed '1s/.*/u/' road.csv >u.csv
+# alone K OPTIONS: the line of a run with k = K
+alone() {
+	value=$1
+	shift
+	run forced.spec 15 --input u.csv "$@" -D "k=$value" --stats | awk -F, -v value="$value" '
+		NR > 1 { final = final "," $2; rms = rms "," $4; peak = peak "," $7 }
+		END { print value final rms peak ",ok" }'
+}
+for options in '--real double' '--real float' '--show thrust,x' '--show x,y'; do
+	# shellcheck disable=SC2086
+	run forced.spec 15 --input u.csv $options --sweep k=80:120:41 --peak --jobs 1 | cut -d, -f 2- >lanes.csv
+	for value in 80 91 99 120; do
+		# shellcheck disable=SC2086
+		alone $value $options
+	done >expected
+	grep '^80,\|^91,\|^99,\|^120,' lanes.csv >found
+	same expected found "side by side, $options"
+done
+
 # ---- ranges: as the table of their values ----
 printf 'k,m\n12000,250\n12000,300\n12000,350\n16000,250\n16000,300\n16000,350\n20000,250\n20000,300\n20000,350\n' \
 	>grid.csv

@@ -106,8 +106,9 @@ void emit_batch_declarations(const struct emitter *e)
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
-	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n\n",
+	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n",
 	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
+	say(e, b.factors ? "extern const pl_many $n_many;  /* by which programs step instances of any model */\n\n" : "\n");
 }
 
 /* ---- what instances share of a step ---- */
@@ -205,7 +206,7 @@ static void emit_include(const struct batch *b)
 		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
-		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled });
+		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	if (has_peaks(e))
 		say_macro(e, "NOMINAL", e->step->is.tuned ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
