@@ -581,13 +581,13 @@ typedef struct pl_model {
     const int *start_samples;
 } pl_model;
 
-/* NAME_many, by which programs step instances of any model side by side: of NAME_batch, where tunable params differ. b is
- * a NAME_instances; y has `rows`, factors `factors` and peak `outputs` times `count` entries, peak may be NULL. */
+/* NAME_many, by which programs step instances of any model side by side: NAME_batch, where tunable params differ. b is a
+ * NAME_instances; y has `rows`, factors `factors` and peak `outputs` times `count` entries, peak may be NULL. */
 typedef struct pl_many {
     size_t size;       /* of NAME_instances [bytes] */
     int rows, factors; /* numbers of an instance */
     void (*init)(void *b, size_t count, PL_REAL *y, PL_REAL *factors, PL_REAL *peak); /* t = 0, as the spec says */
-    void (*hold)(void *b, const PL_REAL *u);  /* the samples before the first step; NULL where no input is a ramp */
+    void (*hold)(void *b, const PL_REAL *u); /* the samples before the first step; NULL where no input is a ramp */
     int (*retune)(void *b, size_t j, const PL_REAL *params, PL_REAL *out); /* instance j; out: its outputs now */
     void (*run)(void *b, size_t n, const PL_REAL *u, PL_REAL *out); /* n steps; out: n x outputs x count, or NULL */
     int (*status)(const void *b, size_t j);

@@ -104,9 +104,11 @@ static void take_steps(const struct lanes *l, const double *u, uint64_t k, size_
 		m->many->run(l->b, n, rows, l->out);
 	const size_t row = (size_t)m->own_outputs * l->count;
 	const double *out = as_doubles(l, n * row);
-	for (int i = 0; i < m->outputs; i++)
+	for (int i = 0; i < m->outputs; i++) {
+		const double *column = out + (size_t)(m->shown ? m->shown[i] : i) * l->count;
 		for (size_t j = 0; j < l->count; j++)
-			stats_column(&stats[j], i, k, n, out + (size_t)(m->shown ? m->shown[i] : i) * l->count + j, row);
+			stats_column(&stats[j], i, k, n, column + j, row);
+	}
 	for (size_t j = 0; j < l->count; j++)
 		stats[j].rows = k + n;
 }

@@ -135,7 +135,7 @@ struct machine *machine_open(const char *path, const char *name, char **error)
 struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error)
 {
 	struct machine *m = NULL;
-	for (int attempt = 0; !m && attempt < 2; attempt++) {   /* what a crash has left, or an archive of other bits, is made anew */
+	for (int attempt = 0; !m && attempt < 2; attempt++) {   /* what a crash has left is made anew */
 		char *object = compile(t, c, attempt > 0, error);
 		m = object ? machine_open(object, c->name, error) : NULL;
 		free(object);

@@ -40,8 +40,8 @@ double time_number(uint64_t k, double h, bool single)
 {
 	digits_decimal step = digits_shortest(h, single);
 	const uint64_t whole = UINT64_C(1) << 53;
-	if (step.exponent <= 0 && step.exponent >= -22 && step.digits > 0 && step.digits < (single ? 1000000u : whole) &&
-	    k < whole / step.digits) {
+	if (step.exponent <= 0 && step.exponent >= -22 && step.digits > 0 &&
+	    step.digits < (single ? 1000000u : whole) && k < whole / step.digits) {
 		double ten = 1;
 		for (int i = step.exponent; i < 0; i++)
 			ten *= 10;

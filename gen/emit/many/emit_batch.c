@@ -108,7 +108,7 @@ void emit_batch_declarations(const struct emitter *e)
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
 	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n",
 	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
-	say(e, b.factors ? "extern const pl_many $n_many;  /* by which programs step instances of any model */\n\n" : "\n");
+	say(e, b.factors ? "extern const pl_many $n_many;  /* for programs that drive any model */\n\n" : "\n");
 }
 
 /* ---- what instances share of a step ---- */
