@@ -207,6 +207,19 @@ static struct words wasm_command(const char *source, const char *object)
 	return w;
 }
 
+/* The object, compressed */
+static char *gzipped(const char *object, size_t *length)
+{
+	struct words w = { 0 };
+	add(&w, "gzip");
+	add(&w, "-9n");
+	add(&w, object);
+	const char *shorter = format("%s.gz", object);
+	char *bytes = compile(&w, "the page's WebAssembly", NULL) ? read_bytes(shorter, length) : NULL;
+	unlink(shorter);
+	return bytes;
+}
+
 char *wasm_of(const char *code, size_t *length)
 {
 	const char *folder = new_folder();
@@ -219,7 +232,7 @@ char *wasm_of(const char *code, size_t *length)
 		complain(format("cannot write to '%s'", folder), strerror(errno));
 	else if (compile(&command, "the page's WebAssembly",
 			 "it takes clang and wasm-ld, Debian's packages clang and lld; PLGEN_CLANG names a clang"))
-		bytes = read_bytes(object, length);
+		bytes = gzipped(object, length);
 	unlink(source);
 	unlink(object);
 	rmdir(folder);

@@ -198,190 +198,6 @@ static void put_base64(FILE *to, const unsigned char *bytes, size_t length)
 	}
 }
 
-/* ---- shorter by what repeats: DEFLATE (RFC 1951), one block of the fixed codes ---- */
-
-enum { WINDOW = 32768, LEAST = 3, MOST_ALIKE = 258, TRIES = 1024, HASHES = 1 << 15 };
-
-struct deflating {
-	unsigned char *to;
-	size_t length;          /* whole bytes */
-	unsigned bits, held;    /* bits that are no byte yet, and how many */
-};
-
-/* The lowest bit first */
-static void put_bits(struct deflating *d, unsigned bits, unsigned count)
-{
-	d->bits |= bits << d->held;
-	for (d->held += count; d->held >= 8; d->held -= 8) {
-		d->to[d->length++] = (unsigned char)d->bits;
-		d->bits >>= 8;
-	}
-}
-
-/* A Huffman code stands with its highest bit first. */
-static void put_code(struct deflating *d, unsigned code, unsigned count)
-{
-	unsigned turned = 0;
-	for (unsigned i = 0; i < count; i++)
-		turned |= (code >> i & 1) << (count - 1 - i);
-	put_bits(d, turned, count);
-}
-
-static void put_symbol(struct deflating *d, unsigned symbol)
-{
-	if (symbol < 144)
-		put_code(d, 0x30 + symbol, 8);
-	else if (symbol < 256)
-		put_code(d, 0x190 + symbol - 144, 9);
-	else if (symbol < 280)
-		put_code(d, symbol - 256, 7);
-	else
-		put_code(d, 0xc0 + symbol - 280, 8);
-}
-
-/* value - `least` in ranges: 2^alike of each width 1, then as many of 2, of 4, ...; which one, and the bits within */
-static unsigned range_of(unsigned value, unsigned alike, unsigned *extra)
-{
-	*extra = 0;
-	while (value >> *extra >= 2u << alike)
-		(*extra)++;
-	return (*extra << alike) + (value >> *extra);
-}
-
-static void put_copy(struct deflating *d, size_t length, size_t distance)
-{
-	unsigned extra = 0, range;
-	range = length == MOST_ALIKE ? 28 : range_of((unsigned)length - LEAST, 2, &extra);
-	extra = length == MOST_ALIKE ? 0 : extra;
-	put_symbol(d, 257 + range);
-	put_bits(d, ((unsigned)length - LEAST) & ((1u << extra) - 1), extra);
-	range = range_of((unsigned)distance - 1, 1, &extra);
-	put_code(d, range, 5);
-	put_bits(d, ((unsigned)distance - 1) & ((1u << extra) - 1), extra);
-}
-
-static unsigned hash_of(const unsigned char *at)
-{
-	return (at[0] | (unsigned)at[1] << 8 | (unsigned)at[2] << 16) * 2654435761u >> 17;
-}
-
-static size_t alike(const unsigned char *a, const unsigned char *b, size_t most)
-{
-	size_t length = 0;
-	while (length < most && a[length] == b[length])
-		length++;
-	return length;
-}
-
-/* The longest text before `at` that is as the one there, of the last few with its first three bytes */
-static size_t longest_before(const unsigned char *bytes, size_t at, size_t length, const size_t *last,
-			     const size_t *before, size_t *distance)
-{
-	const size_t most = length - at < MOST_ALIKE ? length - at : MOST_ALIKE;
-	size_t longest = 0, place = most < LEAST ? 0 : last[hash_of(bytes + at)];
-	for (int k = 0; k < TRIES && place > 0 && at - (place - 1) <= WINDOW; k++, place = before[place - 1]) {
-		const size_t same = alike(bytes + place - 1, bytes + at, most);
-		if (same > longest) {
-			longest = same;
-			*distance = at - (place - 1);
-		}
-	}
-	return longest;
-}
-
-static unsigned char *deflated(const unsigned char *bytes, size_t length, size_t *made)
-{
-	struct deflating d = { .to = ARRAY(unsigned char, length / 8 * 9 + 64) };
-	size_t *last = ARRAY(size_t, HASHES), *before = ARRAY(size_t, length + 1), distance = 0;
-	put_bits(&d, 3, 3);
-	for (size_t at = 0, end; at < length; at = end) {
-		size_t longest = longest_before(bytes, at, length, last, before, &distance), later;
-		if (longest >= LEAST && longest_before(bytes, at + 1, length, last, before, &later) > longest)
-			longest = 0;            /* a letter, then the longer text */
-		end = at + (longest < LEAST ? 1 : longest);
-		if (longest < LEAST)
-			put_symbol(&d, bytes[at]);
-		else
-			put_copy(&d, longest, distance);
-		for (size_t k = at; k < end && k + LEAST <= length; k++) {
-			before[k] = last[hash_of(bytes + k)];
-			last[hash_of(bytes + k)] = k + 1;
-		}
-	}
-	put_symbol(&d, 256);
-	put_bits(&d, 0, 7);
-	*made = d.length;
-	return d.to;
-}
-
-/* ---- SHA-256 (FIPS 180-4), by which the policy names a script ---- */
-
-static uint32_t rotated(uint32_t x, int by)
-{
-	return x >> by | x << (32 - by);
-}
-
-/* The first 32 bits of the fraction of the square or cube root of the prime number `index`, in whole numbers */
-static uint32_t root_bits(int index, unsigned degree)
-{
-	INTEGER root = INTEGER_ZERO;
-	mpz_set_ui(root, 2);
-	for (int i = 0; i < index; i++)
-		mpz_nextprime(root, root);
-	mpz_mul_2exp(root, root, 32 * degree);
-	mpz_root(root, root, degree);
-	mpz_fdiv_r_2exp(root, root, 32);
-	return (uint32_t)mpz_get_ui(root);
-}
-
-static void sha256_block(const unsigned char *block, const uint32_t *k, uint32_t *sum)
-{
-	uint32_t w[64], v[8];
-	for (int i = 0; i < 16; i++)
-		w[i] = (uint32_t)block[4 * i] << 24 | (uint32_t)block[4 * i + 1] << 16 |
-		       (uint32_t)block[4 * i + 2] << 8 | block[4 * i + 3];
-	for (int i = 16; i < 64; i++) {
-		const uint32_t a = w[i - 15], b = w[i - 2];
-		w[i] = w[i - 16] + w[i - 7] + (rotated(a, 7) ^ rotated(a, 18) ^ a >> 3) +
-		       (rotated(b, 17) ^ rotated(b, 19) ^ b >> 10);
-	}
-	memcpy(v, sum, sizeof v);
-	for (int i = 0; i < 64; i++) {
-		const uint32_t a = v[0], e = v[4];
-		const uint32_t first = v[7] + (rotated(e, 6) ^ rotated(e, 11) ^ rotated(e, 25)) +
-				       ((e & v[5]) ^ (~e & v[6])) + k[i] + w[i];
-		const uint32_t second = (rotated(a, 2) ^ rotated(a, 13) ^ rotated(a, 22)) +
-					((a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]));
-		memmove(v + 1, v, 7 * sizeof *v);
-		v[4] += first;
-		v[0] = first + second;
-	}
-	for (int i = 0; i < 8; i++)
-		sum[i] += v[i];
-}
-
-static void put_sha256(FILE *to, const char *text)
-{
-	const size_t length = strlen(text), blocks = (length + 9 + 63) / 64;
-	unsigned char *padded = ARRAY(unsigned char, blocks * 64), bytes[32];
-	uint32_t k[64], sum[8];
-	for (int i = 0; i < 64; i++)
-		k[i] = root_bits(i, 3);
-	for (int i = 0; i < 8; i++)
-		sum[i] = root_bits(i, 2);
-	memcpy(padded, text, length);
-	padded[length] = 0x80;
-	for (int i = 0; i < 8; i++)
-		padded[blocks * 64 - 1 - (size_t)i] = (unsigned char)((uint64_t)length * 8 >> 8 * i);
-	for (size_t i = 0; i < blocks; i++)
-		sha256_block(padded + 64 * i, k, sum);
-	for (int i = 0; i < 32; i++)
-		bytes[i] = (unsigned char)(sum[i / 4] >> (24 - 8 * (i % 4)));
-	fputs("'sha256-", to);
-	put_base64(to, bytes, sizeof bytes);
-	fputs("'", to);
-}
-
 /* ---- the page ---- */
 
 /* The model's C, and behind it what the page calls */
@@ -444,18 +260,11 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	return ramps;
 }
 
-static const char *script_text(void)
-{
-	return format("%s%s", runtime_text("engine.js"), runtime_text("page.js"));
-}
-
 static void put_policy(FILE *to)
 {
 	fputs("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src ", to);
-	put_sha256(to, script_text());
-	fputs(" 'wasm-unsafe-eval'; style-src ", to);
-	put_sha256(to, runtime_text("page.css"));
-	fputs("; base-uri 'none'; form-action 'none'\"/>\n", to);
+	fprintf(to, "'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; base-uri 'none'; form-action 'none'\"/>\n",
+		runtime_text("script.sum"), runtime_text("style.sum"));
 }
 
 static bool has_outputs(const struct spec *spec)
@@ -483,10 +292,10 @@ static bool print_live_page(FILE *to, const struct step *step, const char *code,
 	char *wasm = wasm_of(code_of_page(step, code, ramps), &length);
 	if (!wasm)
 		return false;
-	const unsigned char *shorter = deflated((unsigned char *)wasm, length, &length);
 	fputs("</script>\n<script type=\"text/plain\" id=\"wasm\">", to);
-	put_base64(to, shorter, length);
-	fprintf(to, "</script>\n<script>%s</script>\n</body>\n</html>\n", script_text());
+	put_base64(to, (unsigned char *)wasm, length);
+	fprintf(to, "</script>\n<script>%s%s</script>\n</body>\n</html>\n", runtime_text("engine.js"),
+		runtime_text("page.js"));
 	return true;
 }
 

@@ -874,7 +874,7 @@ class Page {
 /* The functions of the WebAssembly that the page has as text, compressed */
 async function compiled(letters) {
   const bytes = Uint8Array.from(atob(letters), (c) => c.charCodeAt(0));
-  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+  const whole = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   return (await WebAssembly.instantiate(await new Response(whole).arrayBuffer())).instance.exports;
 }
 
