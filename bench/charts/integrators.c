@@ -75,7 +75,7 @@ static void put(FILE *csv, double x)
 	if (isfinite(x))
 		fprintf(csv, ",%.6g", fabs(x) < 1e-11 ? 0.0 : x);
 	else
-		fputs(",no oscillation", csv);
+		fputs(",none", csv);              /* no oscillation */
 }
 
 static void chart(const char *folder, int points)

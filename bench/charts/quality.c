@@ -47,9 +47,7 @@ static void chart(FILE *csv, int points)
 				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation,
 					100 * q.decay, q.damping, 100 * seen(q.elongation), 100 * seen(q.decay));
 			else
-				fprintf(csv,
-					"%s,%.6g,no oscillation,no oscillation,no oscillation,no oscillation,no "
-					"oscillation\n", s.name, share);
+				fprintf(csv, "%s,%.6g,none,none,none,none,none\n", s.name, share);
 		}
 	}
 }

@@ -149,6 +149,16 @@ printf '%s\n' 'x,y,z' '1.23e-05 none,1.23,"12,345"' | cmp - digits.csv >>log 2>&
 [ ! -s log ]
 result $? 'maps and digits: as by hand'
 
+# a list of 70 numbers is 70 rows, too many for a page; and again a row for each
+printf 'a,x,y\nm,%s,%s\n' "$(seq 1 70 | tr '\n' ' ' | sed 's/ $//')" "$(seq 2 71 | tr '\n' ' ' | sed 's/ $//')" >lists.csv
+sh "$made" table -v name=lists.csv lists.csv >page 2>log
+grep -q ', 70 rows' page && ! grep -q '<table' page || cat page >>log
+sh "$made" unfold -v lists=x,y lists.csv >rows 2>>log
+[ "$(wc -l <rows) $(sed -n '71p' rows)" = '71 m,70,71' ] || cat rows >>log
+sh "$made" fold -v by=a -v lists=x,y rows 2>>log | cmp - lists.csv >>log 2>&1
+[ ! -s log ]
+result $? 'lists: as rows and back, and as rows too many for a page'
+
 whole "$kept"
 result $? 'doc/charts: pages have alts, captions, links that lead somewhere; nothing is on no page'
 titled "$kept" 30
