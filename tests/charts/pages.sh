@@ -150,7 +150,7 @@ printf '%s\n' 'x,y,z' '1.23e-05 none,1.23,"12,345"' | cmp - digits.csv >>log 2>&
 result $? 'maps and digits: as by hand'
 
 # a list of 70 numbers is 70 rows, too many for a page; and again a row for each
-printf 'a,x,y\nm,%s,%s\n' "$(seq 1 70 | tr '\n' ' ' | sed 's/ $//')" "$(seq 2 71 | tr '\n' ' ' | sed 's/ $//')" >lists.csv
+printf 'a,x,y\nm,%s,%s\n' "$(seq -s ' ' 1 70)" "$(seq -s ' ' 2 71)" >lists.csv
 sh "$made" table -v name=lists.csv lists.csv >page 2>log
 grep -q ', 70 rows' page && ! grep -q '<table' page || cat page >>log
 sh "$made" unfold -v lists=x,y lists.csv >rows 2>>log
