@@ -16,6 +16,7 @@
  *     PL(share_out)(s, now)                   what outputs read of it
  *     PL(lanes_step)(y, factor, now)          one step of as many instances as there are lanes
  *     PL(lanes_out)(y, factor, now, out)      and their outputs
+ *     PL_FLUSHES, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED, PL_FLUSHES_LANES 1   of flush.h, where a step flushes
  *
  * and where there are outputs that are the largest of something (peaks.h)
  *
@@ -32,18 +33,23 @@
 #include "numbers.h"
 
 #include "given.h"
+#if PL_FLUSHES > 0
+#include "flush.h"
+#endif
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
 #define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
-#if PL_PEAKS > 0
-#define PL_AHEAD 256
-#else
 #define PL_AHEAD 64
+#if PL_FLUSHES > 0
+#define PL_READY(k) (PL_AHEAD - (size_t)((k) & (PL_AHEAD - 1))) /* up to where a step flushes */
+#else
+#define PL_READY(k) PL_AHEAD
 #endif
 
 /* What instances share in some steps ahead: [0] before the first, [k] in step k and behind it */
 typedef struct PL(ahead) {
     size_t steps;
+    int flushes; /* the last step does */
     real now[PL_AHEAD + 1][PL_HAS(PL_SHARED)];
 #if PL_PEAKS > 0
     real acting[PL_AHEAD + 1][PL_SIZE - PL_STATES + PL_PEAKS]; /* on the states, then how far it bends outputs */
@@ -373,6 +379,17 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
+/* Step k of these */
+PL_LANES_INLINE void PL(lanes_go_on)(const PL(ahead) *ahead, size_t k, pl_lanes *y, const pl_lanes *factor)
+{
+    PL(lanes_step)(y, factor, ahead->now[k]);
+#if PL_FLUSHES > 0
+    if (k == ahead->steps && ahead->flushes) {
+        PL(lanes_flush)(y, y + PL_STATES);
+    }
+#endif
+}
+
 PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
 {
     size_t i;
@@ -406,7 +423,7 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
 #if PL_PEAKS > 0
             memcpy(start[g], y[g], sizeof start[g]);
 #endif
-            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
+            PL(lanes_go_on)(ahead, k, y[g], factor[g]);
         }
         if (b->peak || out) {
             PL_LANES_UNROLL
@@ -483,7 +500,7 @@ PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(ahea
     for (k = 1; k <= ahead->steps; k++) {
         PL_LANES_UNROLL
         for (g = 0; g < groups; g++) {
-            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
+            PL(lanes_go_on)(ahead, k, y[g], factor[g]);
         }
         PL_LANES_UNROLL
         for (g = 0; g < groups; g++) {
@@ -574,7 +591,9 @@ void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 {
     PL(ahead) ahead;
     for (; n > 0; n -= ahead.steps) {
-        ahead.steps = n < PL_AHEAD ? n : PL_AHEAD;
+        const size_t ready = PL_READY(b->shared.k);
+        ahead.steps = n < ready ? n : ready;
+        ahead.flushes = ahead.steps == ready;
         PL(share)(&b->shared, PL_THE_INPUTS, &ahead);
 #if PL_INPUTS > 0
         u += ahead.steps * PL_INPUTS;

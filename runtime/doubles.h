@@ -46,6 +46,7 @@
 #undef pl_lanes_accumulate
 #undef pl_lanes_all
 #undef pl_lanes_bits
+#undef pl_lanes_kept
 #undef pl_lanes_load
 #undef pl_lanes_peak
 #undef pl_lanes_size

@@ -46,6 +46,7 @@
 #define pl_lanes_accumulate pl_lanesf_accumulate
 #define pl_lanes_all pl_lanesf_all
 #define pl_lanes_bits pl_lanesf_bits
+#define pl_lanes_kept pl_lanesf_kept
 #define pl_lanes_load pl_lanesf_load
 #define pl_lanes_peak pl_lanesf_peak
 #define pl_lanes_size pl_lanesf_size

@@ -84,6 +84,17 @@ PL_LANES_INLINE pl_lanes pl_lanes_peak(pl_lanes peak, pl_lanes value)
 #endif
 }
 
+/* `value`, and 0 where |of| < least < 1, lane by lane */
+PL_LANES_INLINE pl_lanes pl_lanes_kept(pl_lanes of, pl_lanes value, pl_lanes least)
+{
+    const pl_lanes size = pl_lanes_size(of);
+#if defined(__GNUC__) && (defined(__SSE2__) || (defined(__ARM_NEON) && defined(__aarch64__)))
+    return (pl_lanes)((pl_lanes_bits)value & ~((pl_lanes_bits)(size < least) & (pl_lanes_bits)(least < 1)));
+#else
+    return size < least && least < 1 ? 0 : value;
+#endif
+}
+
 /* Is a above b in some lane, or one of them not a number? */
 PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
 {

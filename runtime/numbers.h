@@ -35,6 +35,15 @@
 #ifndef PL_CHOICES
 #define PL_CHOICES 0
 #endif
+#ifndef PL_DECAYING
+#define PL_DECAYING 0
+#endif
+#ifndef PL_FLUSHES
+#define PL_FLUSHES 0
+#endif
+#ifndef PL_FLUSHES_LANES
+#define PL_FLUSHES_LANES 0
+#endif
 #ifndef PL_EVENT_FREE
 #define PL_EVENT_FREE 0
 #endif
@@ -163,9 +172,6 @@
 #endif
 #ifndef PL_RELATIVE
 #define PL_RELATIVE 0
-#endif
-#ifndef PL_RESTS
-#define PL_RESTS 0
 #endif
 #ifndef PL_ROWS
 #define PL_ROWS 0

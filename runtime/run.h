@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* run.h: NAME_run, many steps in one call; it sets states to 0 that are so small that they would become denormal.
- * Included by the file of the model, which defines before it
+/* run.h: NAME_run, many steps in one call.  Included by the file of the model, which defines before it
  *
  *     PL_TYPE                    the model, with members y, k
  *     PL_INSIDE                  1: a series serves several steps: members served, valid, PL(inside)(s)
@@ -8,53 +7,8 @@
  *     PL_OVER                    1: they are those of one series, member served, and 0 of PL(block): its end is not
  *                                finite, and s as it was
  *     PL_REFRESHED                1: loads have a refresh, which stands at the start of a block
- *     PL_RESTS                   0: nothing comes to rest; 1: all states at once; n: n - 1 parts, of each state
- *                                PL(part)[], -1: that does not
- *     PL_IN_STEP                 1: the step looks for that, not the run
- *     PL_COMPENSATED                    1: s->rest is what rounding took of states that rest at once */
+ *     PL_FLUSHES                 1: blocks of rows flush states, as steps do (flush.h) */
 #include "numbers.h"
-
-#if PL_RESTS > 0
-/* Numbers that small, well above where they have fewer bits, soon take many times as long as others.  To look every 64
- * steps is often enough, and no step shows it. */
-static void PL(rest)(PL_TYPE *s)
-{
-#if PL_SINGLE
-    const real least = (real)1e-35;
-#else
-    const real least = 1e-290;
-#endif
-    int i;
-#if PL_RESTS > 1
-    char moves[PL_RESTS - 1];
-    for (i = 0; i < PL_RESTS - 1; i++) {
-        moves[i] = 0;
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        if (PL(part)[i] >= 0 && !(s->y[i] > -least && s->y[i] < least)) {
-            moves[PL(part)[i]] = 1;
-        }
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        if (PL(part)[i] >= 0 && !moves[PL(part)[i]]) {
-            s->y[i] = 0;
-        }
-    }
-#else
-    for (i = 0; i < PL_STATES; i++) {
-        if (!(s->y[i] > -least && s->y[i] < least)) {
-            return;
-        }
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        s->y[i] = 0;
-#if PL_COMPENSATED
-        s->low[i] = 0;
-#endif
-    }
-#endif
-}
-#endif
 
 #if PL_SOFT && defined __GNUC__ && !defined __clang__ /* gcc would put it into all that call it */
 PL_APART void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS]);
@@ -113,9 +67,9 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
 #else
             PL(block)(&now, out);
 #endif
-#if PL_RESTS > 0 && !PL_IN_STEP
+#if PL_FLUSHES > 0
             if ((now.k & 63) < PL_ROWS) {
-                PL(rest)(&now);
+                PL(flush)(&now);
             }
 #endif
             if (out != NULL) {
@@ -129,11 +83,6 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
         out = PL(run_on)(s, u, out);
 #if PL_INPUTS > 0
         u += PL_INPUTS;
-#endif
-#if PL_RESTS > 0 && !PL_IN_STEP
-        if ((s->k & 63) == 0) {
-            PL(rest)(s);
-        }
 #endif
     }
 }

@@ -6,6 +6,7 @@
 #undef PL_ADAPTIVE
 #undef PL_ADVANCE
 #undef PL_AHEAD
+#undef PL_READY
 #undef PL_ALL
 #undef PL_ALONE
 #undef PL_REFRESHED
@@ -84,6 +85,9 @@
 #undef PL_EVENT_COLUMNS
 #undef PL_EVENT_ORDER
 #undef PL_SWITCHING_FUNCTIONS
+#undef PL_DECAYING
+#undef PL_FLUSHES
+#undef PL_FLUSHES_LANES
 #undef PL_FACTORS
 #undef PL_FASTEST
 #undef PL_FEW
@@ -133,7 +137,6 @@
 #undef PL_INSTANCES
 #undef PL_INTERVAL
 #undef PL_IN_PARTS
-#undef PL_IN_STEP
 #undef PL_JUMPS
 #undef PL_KEEPS
 #undef PL_KEEPS_CHECK
@@ -206,7 +209,6 @@
 #undef PL_REGIONS
 #undef PL_RELATIVE
 #undef PL_REMAINDERS
-#undef PL_RESTS
 #undef PL_RETUNED
 #undef PL_RING
 #undef PL_RISE

@@ -108,6 +108,18 @@ static void banner_modes(const struct emitter *e)
 			"%s are rounding.", unit, lost, unit, modal->condition, 2 * lost, unit);
 }
 
+static void banner_flush(const struct emitter *e)
+{
+	const struct denormal_flush *flush = e->step->linear.flush;
+	const bool single = e->model->request.single;
+	say(e, " * Denormal flush: every 64 steps states below %s of the largest%s", single ? "2^-120" : "2^-900",
+	    flush->parts > 1 ? " that they act on" : "");
+	if (flush->decaying > 0)
+		say(e, ", and below %s%s", single ? "1e-35" : "1e-290",
+		    flush->decaying < flush->parts ? " where motions decay" : "");
+	say(e, ", become 0.\n");
+}
+
 /* What the form does to rounding, and what rounding has done to its constants */
 static void banner_form(const struct emitter *e)
 {
@@ -124,8 +136,7 @@ static void banner_form(const struct emitter *e)
 	if (e->step->no.modal)
 		say(e, " * The form modal would be cheaper for so few outputs, but %s.\n", e->step->no.modal);
 	if (e->step->linear.flush)
-		say(e, " * Denormal flush: every 64 steps $n_%s sets a motion that has decayed below %s to 0.\n",
-		    e->step->linear.flush->in_step ? "step" : "run", e->model->request.single ? "1e-35" : "1e-290");
+		banner_flush(e);
 	if (e->model->relative)
 		banner_relative(e);
 	if (e->step->carried.count)

@@ -174,6 +174,7 @@ static void emit_all_tables(const struct emitter *e)
 static void emit_motion_of(const struct emitter *e, bool rhs)
 {
 	emit_includes(e, rhs);
+	emit_flush(e);
 	emit_all_tables(e);
 	emit_modes(e);
 	emit_access(e);

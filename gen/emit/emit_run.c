@@ -297,31 +297,10 @@ static void emit_block(const struct emitter *e)
 	close_function(e, "");
 }
 
-/* ---- what comes to rest ---- */
-
-/* As run.h has it: 1: all at once, else one more than there are parts */
-static int rests_of(const struct emitter *e)
-{
-	const struct denormal_flush *flush = e->step->linear.flush;
-	bool apart = flush && flush->parts > 1;
-	for (int i = 0; flush && i < e->system->states; i++)
-		apart = apart || flush->part[i] < 0;
-	return !flush ? 0 : apart ? flush->parts + 1 : 1;
-}
-
-static void emit_parts_at_rest(const struct emitter *e)
-{
-	say(e, "\n/* Which part each state is of, of those that decay by themselves; -1: of none */\n");
-	emit_integers(e, "short", "part", e->system->states, e->step->linear.flush->part);
-}
-
 void emit_run(const struct emitter *e)
 {
 	const struct rows *rows = e->step->rows;
-	const int rests = rests_of(e);
 	const bool over = runs_in_blocks(e);
-	if (rests > 1)
-		emit_parts_at_rest(e);
 	if (rows) {
 		emit_row_tables(e);
 		emit_block(e);
@@ -331,8 +310,7 @@ void emit_run(const struct emitter *e)
 		   { "OUTPUTS", e->model->outputs },
 		   { "INSIDE", serves_rows(e) && !has_peaks(e) },
 		   { "ROWS", rows ? rows->count : over ? e->model->truncation.over : 0 },
-		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL }, { "RESTS", rests },
-		   { "IN_STEP", rests && e->step->linear.flush->in_step },
-		   { "COMPENSATED", e->step->program->compensated });
+		   { "OVER", over }, { "REFRESHED", e->step->refresh != NULL },
+		   { "FLUSHES", rows && e->step->linear.flush });
 	say(e, "#include \"run.h\"\n");
 }

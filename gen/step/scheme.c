@@ -98,7 +98,6 @@ static void build_exact(struct step *step)
 	if (step->forced)
 		step->program = linear_program(step);
 	fill_refresh(step);
-	plan_rest(step);
 }
 
 static void build_with_remainder(struct step *step)
@@ -347,6 +346,7 @@ static void build_flow(struct step *step)
 		(step->is.tuned ? build_tuned_step : build_of[step->is.flow])(step);
 	if (step->is.events == EVENTS_SPLIT)
 		plan_event_split(step);
+	plan_flush(step);
 }
 
 /* Where a model is stepped in several ways, that of the equations as written is made once. */

@@ -248,5 +248,5 @@ at_rest() {
 }
 : >log
 at_rest 'steps of nine masses' step double 9 --form delta
-at_rest 'runs of two, in float' run float 2 --form delta
+at_rest 'steps of two, in float' step float 2 --form delta
 tap_end

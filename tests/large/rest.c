@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* rest: what has decayed below 1e-290 (1e-35 in float) is at rest after 64 steps, what has not goes on, and what is no
+/* rest: what has decayed below 1e-290 (1e-35 in float) is 0 after 64 steps, what has not goes on, and what is no
  * number stays none. -DMODEL=pl_model -DREAL=double: `decaying_model` is one whose states all decay; of `mixed_model`
  * those called a... do, those called b... do not. With the argument `run`, by that function, else by steps. */
 #include "plrt.h"

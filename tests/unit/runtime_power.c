@@ -394,10 +394,6 @@ void paired_jump(paired *s, uint64_t n);
 #define PL_ROWS 4
 #define PL_OVER 0
 #define PL_REFRESHED 0
-#define PL_RESTS 2
-#define PL_IN_STEP 0
-#define PL_COMPENSATED 0
-static const short paired_part[] = {0, -1};
 void paired_run(paired *s, size_t n, real *out);
 #include "run.h"
 
@@ -424,26 +420,65 @@ static void by_blocks(void **state)
     }
 }
 
-/* States halve at each step.  What is below `lowest` comes to rest where a multiple of 64 steps is passed: of `faded`
- * by parts, but for the last state; of `faded_whole` all at once, with what rounding took. */
+/* States halve at each step.  Where a multiple of 64 steps is passed what is below `lowest` becomes 0: of `faded` in
+ * two parts, not in a third, which does not decay; of `faded_whole` with what rounding took. */
 typedef struct faded {
     real y[3], low[3];
     int k;
 } faded;
 typedef struct faded faded_whole;
-static const short faded_part[] = {0, 1, -1};
+static const short faded_flush_part[] = {0, 1, 2};
 #ifdef REAL_IS_FLOAT
-static const real lowest = (real)1e-35;
+static const real lowest = (real)1e-35, beside = (real)0x1p-120;
 #else
-static const real lowest = 1e-290;
+static const real lowest = 1e-290, beside = 0x1p-900;
 #endif
 
-static void faded_step(faded *s)
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) faded_##name
+#define PL_TYPE faded
+#define PL_STATES 3
+#define PL_FLUSHES 3
+#define PL_DECAYING 2
+#include "flush.h"
+
+#ifdef REAL_IS_FLOAT
+#define PL_SINGLE 1
+#else
+#define PL_SINGLE 0
+#endif
+#define PL(name) faded_whole_##name
+#define PL_TYPE faded_whole
+#define PL_STATES 3
+#define PL_FLUSHES 1
+#define PL_DECAYING 1
+#define PL_COMPENSATED 1
+#include "flush.h"
+
+static void halve(faded *s)
 {
     int i;
     for (i = 0; i < 3; i++)
         s->y[i] /= 2;
     s->k++;
+}
+
+static void faded_step(faded *s)
+{
+    halve(s);
+    if ((s->k & 63) == 0)
+        faded_flush(s);
+}
+
+static void faded_whole_step(faded *s)
+{
+    halve(s);
+    if ((s->k & 63) == 0)
+        faded_whole_flush(s);
 }
 
 static void faded_out(const faded *s, real out[1])
@@ -455,13 +490,12 @@ static void faded_block(faded *s, real *out)
 {
     int i;
     for (i = 0; i < 4; i++) {
-        faded_step(s);
+        halve(s);
         if (out)
             faded_out(s, out + i);
     }
 }
 
-#define faded_whole_step faded_step
 #define faded_whole_out faded_out
 #define faded_whole_block faded_block
 
@@ -473,15 +507,9 @@ static void faded_block(faded *s, real *out)
 #define PL(name) faded_##name
 #define PL_TYPE faded
 #define PL_STATES 3
-#define PL_INPUTS 0
 #define PL_OUTPUTS 1
-#define PL_INSIDE 0
 #define PL_ROWS 4
-#define PL_OVER 0
-#define PL_REFRESHED 0
-#define PL_RESTS 3
-#define PL_IN_STEP 0
-#define PL_COMPENSATED 0
+#define PL_FLUSHES 1
 void faded_run(faded *s, size_t n, real *out);
 #include "run.h"
 
@@ -493,15 +521,9 @@ void faded_run(faded *s, size_t n, real *out);
 #define PL(name) faded_whole_##name
 #define PL_TYPE faded_whole
 #define PL_STATES 3
-#define PL_INPUTS 0
 #define PL_OUTPUTS 1
-#define PL_INSIDE 0
 #define PL_ROWS 4
-#define PL_OVER 0
-#define PL_REFRESHED 0
-#define PL_RESTS 1
-#define PL_IN_STEP 0
-#define PL_COMPENSATED 1
+#define PL_FLUSHES 1
 void faded_whole_run(faded_whole *s, size_t n, real *out);
 #include "run.h"
 
@@ -517,24 +539,38 @@ static faded fading(void (*run)(faded *, size_t, real *), int k, int n, double a
     return s;
 }
 
-static void small_states_rest(void **state)
+static void small_states_become_0(void **state)
 {
     static const int start[] = {60, 61, 62, 63, 63, 124, 64, 60, 65}, steps[] = {4, 4, 4, 4, 1, 4, 4, 3, 4};
     size_t i;
     (void)state;
     for (i = 0; i < sizeof start / sizeof *start; i++) {
-        const int rests = i < 6;
+        const int flushes = i < 6;
         faded s = fading(faded_run, start[i], steps[i], 0.9, 1.1, 0.9);
-        assert_int_equal(s.y[0] > 0, !rests);
+        assert_int_equal(s.y[0] > 0, !flushes);
         assert_true(s.y[1] > 0 && s.y[2] > 0);
         s = fading(faded_run, start[i], steps[i], -1.1, -0.9, 0.9);
-        assert_int_equal(s.y[1] < 0, !rests);
+        assert_int_equal(s.y[1] < 0, !flushes);
         assert_true(s.y[0] < 0 && s.y[2] > 0);
-        s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 0.9);
-        assert_int_equal(s.y[0] < 0 && s.y[1] > 0 && s.y[2] > 0 && s.low[1] > 0, !rests);
-        assert_int_equal(s.y[0] < 0 || s.y[1] > 0 || s.y[2] > 0 || s.low[1] > 0, !rests);
-        s = fading(faded_whole_run, start[i], steps[i], -0.9, 0.9, 1.1);
-        assert_true(s.y[0] < 0 && s.y[1] > 0 && s.low[1] > 0);
+        s = fading(faded_whole_run, start[i], steps[i], -0.9, 1.1, 0.9);
+        assert_int_equal(s.y[0] < 0 && s.y[2] > 0 && s.low[0] > 0 && s.low[2] > 0, !flushes);
+        assert_int_equal(s.y[0] < 0 || s.y[2] > 0 || s.low[0] > 0 || s.low[2] > 0, !flushes);
+        assert_true(s.y[1] > 0 && s.low[1] > 0);
+    }
+}
+
+/* Beside the largest of their part: the first is 0 before 1 and stays before what is not finite, or as small */
+static void states_are_small_beside_others(void **state)
+{
+    const real unit = 256, size[] = {unit, 2 * unit, 1 / beside, (real)INFINITY, unit * beside};
+    size_t i;
+    (void)state;
+    for (i = 0; i < sizeof size / sizeof *size; i++) {
+        faded s = {{(real)1.1 * unit * beside, (real)0.9 * unit * beside, size[i]}, {1, 1, 1}, 64};
+        faded_whole_flush(&s);
+        assert_int_equal(s.y[0] > 0, i != 1);
+        assert_int_equal(s.y[1] > 0, i > 1);
+        assert_true(s.y[2] >= size[i]);
     }
 }
 
@@ -550,6 +586,7 @@ ROOM_WITH(power, NULL, report,
     cmocka_unit_test(no_steps),
     cmocka_unit_test(overflow_is_infinite_and_stays_where_it_is),
     cmocka_unit_test(overflow_has_the_sign_of_the_sum),
-    cmocka_unit_test(small_states_rest),
+    cmocka_unit_test(small_states_become_0),
+    cmocka_unit_test(states_are_small_beside_others),
     cmocka_unit_test(from_change_to_change),
     cmocka_unit_test(by_blocks))

@@ -150,6 +150,21 @@ static void emit_plain_step(const struct emitter *e)
 	emit_looped_step(e);
 }
 
+/* Before the steps that call it */
+void emit_flush(const struct emitter *e)
+{
+	const struct denormal_flush *flush = e->step->linear.flush;
+	if (!flush)
+		return;
+	if (flush->parts > 1) {
+		say(e, "\n/* Which part each state is of: no other state acts on it */\n");
+		emit_integers(e, "short", "flush_part", e->system->states, flush->part);
+	}
+	emit_sizes(e, "flush.h", { "STATES", e->system->states }, { "FLUSHES", flush->parts },
+		   { "DECAYING", flush->decaying }, { "COMPENSATED", e->step->program->compensated });
+	say(e, "#include \"flush.h\"\n");
+}
+
 void emit_step_advance(const struct emitter *e)
 {
 	emit_keep_inputs(e, 1);
@@ -159,8 +174,8 @@ void emit_step_advance(const struct emitter *e)
 	if (e->step->refresh)
 		say(e, "    if (++s->since == %d) { $n_refresh_phasors(s); }\n",
 		    e->step->refresh->steps);
-	if (e->step->linear.flush && e->step->linear.flush->in_step)
-		say(e, "    if ((s->k & 63) == 0) { $n_rest(s); }\n");
+	if (e->step->linear.flush)
+		say(e, "    if ((s->k & 63) == 0) { $n_flush(s); }\n");
 }
 
 const char *checks_of_step(const struct emitter *e)
@@ -248,8 +263,6 @@ static void emit_changing_step(const struct emitter *e)
 void emit_step(const struct emitter *e)
 {
 	emit_groups(e);
-	if (e->step->linear.flush && e->step->linear.flush->in_step)
-		say(e, "\nstatic void $n_rest($n *s);\n");
 	if (loads_change(e->system)) {
 		emit_changing_step(e);
 		return;

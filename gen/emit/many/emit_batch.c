@@ -4,6 +4,7 @@
 #include "emit/declarations.h"
 #include "emit/state.h"
 #include "emit/steps.h"
+#include "step/linear/forms.h"
 #include "step/linear/rows.h"
 
 #include <string.h>
@@ -206,7 +207,10 @@ static void emit_include(const struct batch *b)
 		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
-		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps });
+		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps },
+		   { "FLUSHES_LANES", 1 }, { "FLUSHES", e->step->linear.flush->parts },
+		   { "DECAYING", e->step->linear.flush->decaying },
+		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	if (has_peaks(e))
 		say_macro(e, "NOMINAL", e->step->is.tuned ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));

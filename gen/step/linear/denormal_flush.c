@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Numbers below the range of full precision take many times as long as others, and tell nothing: factors that are so
- * small leave the step, and what has decayed that far comes to rest. */
+ * small leave the step, and states that have decayed that far become 0 (runtime/flush.h). */
 #include "forms.h"
 #include "images.h"
+#include "model/regions/regions.h"
 
 #include <float.h>
 #include <math.h>
@@ -42,12 +43,12 @@ void leave_out_lost(struct step *step)
 /* ---- states ---- */
 
 /* Is the real part of every pole negative? */
-static bool decays(const struct linear *block)
+static bool decays(const struct resolvent *resolvent)
 {
 	enum { BITS = 128 };
 	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum =
-		spectrum_of(poly_primitive(*resolvent_determinant(resolvent_of(block)), content));
+		spectrum_of(poly_primitive(*resolvent_determinant(resolvent), content));
 	bool negative = spectrum->zero == 0 && spectrum_refine(spectrum, BITS);
 	for (int f = 0; f < spectrum->factors && negative; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
@@ -55,38 +56,61 @@ static bool decays(const struct linear *block)
 	return negative;
 }
 
-/* Modes are apart whatever their blocks. */
-static void part_modes(const struct modal *modal, int *part)
+/* A piecewise-linear model decays where it does in each of its regions, and nothing gives or takes speed. */
+static bool decays_in_all(const struct switching *s)
 {
-	for (int i = 0; i < modal->states; i++)
-		part[i] = i < modal->pairs ? i : i - modal->pairs;
+	enum { MOST_SYSTEMS = 16 };
+	bool all = s->systems <= MOST_SYSTEMS && s->frictions + s->impacts == 0;
+	for (int k = 0; k < s->systems && all; k++)
+		all = decays(resolvent_of(&s->system[k]));
+	return all;
 }
 
-/* Boards step small models, and their arithmetic takes no longer for such numbers: the step of a small model stays as
- * short as it is, and its run looks. */
-void plan_rest(struct step *step)
+/* The states of one part, and the next number */
+static void flush_part(struct denormal_flush *flush, const struct block *block)
 {
-	const struct linear *system = &step->branch->system;
+	for (int i = 0; i < block->system.states; i++)
+		flush->part[block->state[i]] = flush->parts;
+	flush->parts++;
+}
+
+/* Modes are apart whatever their blocks. */
+static void part_modes(struct denormal_flush *flush, const struct modal *modal)
+{
+	for (int i = 0; i < modal->states; i++)
+		flush->part[i] = i < modal->pairs ? i : i - modal->pairs;
+	flush->decaying = flush->decaying == flush->parts ? modal->pairs + modal->reals : 0;
+	flush->parts = modal->pairs + modal->reals;
+}
+
+static void part_blocks(struct denormal_flush *flush, const struct branch *branch)
+{
 	struct block *block;
-	if (step->model->params.tuning || system->heldK || step->forced || step->carried.count ||
-	    step->form == FORM_KICK_DRIFT_KICK)
-		return;
-	const int blocks = blocks_of(system, &block);
-	struct denormal_flush *flush = NEW(struct denormal_flush);
-	bool any = false, all = true;
-	flush->part = ARRAY(int, system->states);
-	flush->parts = blocks;
-	flush->in_step = system->states > LIMIT_UNROLLED_STATES;
+	const int blocks = blocks_of(&branch->system, &block);
+	bool *decaying = ARRAY(bool, blocks);
 	for (int b = 0; b < blocks; b++) {
-		const bool free = !any_load_acts(&block[b].system) && decays(&block[b].system);
-		any = any || free;
-		all = all && free;
-		for (int i = 0; i < block[b].system.states; i++)
-			flush->part[block[b].state[i]] = free ? b : -1;
+		decaying[b] = decays(blocks > 1 ? resolvent_of(&block[b].system) : branch->resolvent);
+		if (decaying[b])
+			flush_part(flush, &block[b]);
 	}
-	if (step->modal && all) {
-		part_modes(step->modal, flush->part);
-		flush->parts = step->modal->pairs + step->modal->reals;
+	flush->decaying = flush->parts;
+	for (int b = 0; b < blocks; b++)
+		if (!decaying[b])
+			flush_part(flush, &block[b]);
+}
+
+void plan_flush(struct step *step)
+{
+	const struct switching *switching = step->model->switching;
+	struct denormal_flush *flush = NEW(struct denormal_flush);
+	flush->part = ARRAY(int, step->branch->system.states);
+	if (step->is.flow == FLOW_LINEAR && !switching && !step->branch->system.heldK) {
+		part_blocks(flush, step->branch);
+	} else {
+		flush->parts = 1;
+		flush->decaying = switching && !switching->parts && decays_in_all(switching);
 	}
-	step->linear.flush = any && (all || !step->modal) ? flush : NULL;
+	if (step->modal)
+		part_modes(flush, step->modal);
+	step->linear.flush = step->is.flow == FLOW_LINEAR || step->is.flow == FLOW_RECIPE ? flush : NULL;
 }

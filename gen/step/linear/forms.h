@@ -91,11 +91,11 @@ void plan_modal(struct step *step);                          /* where it is aske
 
 /* ---- denormal_flush.c: what is too small to count ---- */
 
-struct denormal_flush {                       /* parts of the state that nothing but themselves moves, and that decay */
-	bool in_step;               /* the step looks; else the run does */
-	int parts, *part;           /* per state as it is kept: its part; -1: of none that comes to rest */
+struct denormal_flush {                       /* parts of the state that nothing but themselves moves */
+	int parts, decaying;        /* the first of them decay */
+	int *part;                  /* per state as it is kept */
 };
 void leave_out_lost(struct step *step);                      /* factors; before the program */
-void plan_rest(struct step *step);                           /* step->rest */
+void plan_flush(struct step *step);                          /* step->linear.flush */
 
 #endif
