@@ -16,7 +16,7 @@ int plgen(int argc, char **argv);       /* what the program's main returns; it m
 enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION, PRINT_RESPONSE,
 	     PRINT_PLOT, PRINT_REPORT };
 struct options {
-	const char *spec, *output, *depfile, *a2l, *solution;
+	const char *spec, *output, *depfile, *a2l, *solution, *tunable;
 	const char *value;              /* of --response, --plot */
 	const char *params;             /* a file with values of params, which come before those of -D; */
 	int definitions;

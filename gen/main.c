@@ -82,12 +82,26 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	return spec;
 }
 
+/* The spec with the statement of --tunable behind it */
+static const struct source *with_tunables(const struct work *w, const struct source *source)
+{
+	if (!source || !w->options.tunable)
+		return source;
+	struct source *more = NEW(struct source);
+	*more = *source;
+	more->text = format("%s\ntunable %s\n", source->text, w->options.tunable);
+	more->length = strlen(more->text);
+	return more;
+}
+
 /* Where no scheme is asked for the best one may not have a step of this model: then another is taken, and a note says
  * why. What stands in the way of any is said by the last. */
 static bool make_of(struct work *w, const struct source *source)
 {
 	struct request *request = &w->options.request;
 	w->spec = parsed(w, source);
+	if (w->options.tunable && !diagnostics_errors())
+		refuse_what_stays(w->spec);
 	leave_step_open(w);
 	if (!diagnostics_errors() && !request->scheme && !w->spec->request.scheme && !request->solution) {
 		request->passed_over = refusal_of(try_all, w);
@@ -188,7 +202,7 @@ static struct model *model_at_place(struct work *w, const struct source *source,
 static const struct source *source_of(struct work *w)
 {
 	struct request *request = &w->options.request;
-	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
+	const struct source *source = with_tunables(w, source_read(w->options.spec, (struct place){ 0 }));
 	if (!source || !define(w))
 		return NULL;
 	request->linearise = place_of_views(&w->options);

@@ -287,6 +287,8 @@ static const struct row {
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
 	{ "sensitivity", "k,c,x", "also emit derivatives by params, initial values, inputs: NAME_step_d",
 	  .text = AT(request.sensitivity) },
+	{ "tunable", "k,c", "more params that the running program may change, as the statement says",
+	  .text = AT(tunable) },
 	{ "external", "casadi", "also emit NAME_casadi: one step with its Jacobian, as an external function of CasADi",
 	  .take = take_external },
 	{ "fast", NULL, "with tables for long runs: NAME_run by blocks of rows, and --refresh",
@@ -480,6 +482,7 @@ static void note_all(struct options *options)
 	note_value(options, "--params", slash ? slash + 1 : options->params);
 	note_value(options, "--modes", request->modes ? format("\"%s\"", request->modes) : NULL);
 	note_value(options, "--sensitivity", request->sensitivity);
+	note_value(options, "--tunable", options->tunable);
 	note_value(options, "--step", request->step);
 	note_value(options, "--prefix", request->prefix);
 	note_flag(options, "--loads remainder", request->loads_left);

@@ -581,7 +581,7 @@ typedef struct pl_model {
     const int *start_samples;
 } pl_model;
 
-/* NAME_many, by which programs step instances of any model side by side: NAME_batch, where tunable params differ. b is a
+/* NAME_many, by which programs step instances of any model side by side by NAME_batch: tunable params differ. b is a
  * NAME_instances; y has `rows`, factors `factors` and peak `outputs` times `count` entries, peak may be NULL. */
 typedef struct pl_many {
     size_t size;       /* of NAME_instances [bytes] */

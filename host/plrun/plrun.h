@@ -34,6 +34,7 @@
  *     gnuplot.c   what draws pictures
  *     grid.c      the table of a sweep over ranges
  *     sweep.c     lines of params, and what a run with each comes to
+ *     variants.c  the models that these take
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
  *     fit.c       values of params, so that outputs come closest to what was measured (GSL)
@@ -52,10 +53,12 @@
 #include "plrt.h"
 #include "host/picture.h"
 
+#include <pthread.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <time.h>
 #include <sys/types.h>
 
 /* ---- message.c ---- */
@@ -376,12 +379,13 @@ struct job {
 	const double *offset;                   /* NULL, or what is added to each initial state */
 	double h, until;                        /* until < 0: to the end of the record */
 	bool resampled, reported;               /* reported: progress is */
+	bool tuned;                             /* by run_steps: the model has taken the params */
 	uint64_t steps;                         /* these two by plan_run */
 	uint64_t *crossed;                      /* NULL, or where the number of breakpoints crossed goes */
 };
 char *plan_run(struct job *job);                        /* NULL, or why not */
 typedef void watch(void *who, uint64_t k, const double *out);  /* after step k, and at k = 0 */
-char *run_steps(const struct job *job, watch *each, void *who);
+char *run_steps(struct job *job, watch *each, void *who);
 
 struct samples;                                 /* of inputs, step by step */
 /* hold: is called with what comes before the first step */
@@ -477,20 +481,63 @@ void fitted_draw(const struct estimate *e, const struct options *o, const char *
 _Noreturn void make_page(const struct toolchain *t, const struct options *o);
 _Noreturn void run_chart(const struct toolchain *t, const struct options *o);
 
-/* ---- sweep.c, journal.c, workers.c ---- */
+/* ---- sweep.c, variants.c, journal.c, workers.c ---- */
 
 /* Of several processes under mpirun this is number `rank` of `size`; else 0 of 1 */
 struct workers {
 	int rank, size;
 };
 
-struct sweep;
+struct journal;
+struct variant {
+	size_t row;                             /* the first that has it */
+	size_t left;                            /* rows that are still to come */
+	pthread_mutex_t busy;
+	bool tried;
+	struct machine *machine;                /* NULL, tried: `error` */
+	char *error;
+};
+
+struct param {
+	const char *name;
+	bool tuned, step;                       /* not tuned: by plgen */
+};
+
+struct sweep {
+	const struct toolchain *tools;
+	const struct options *options;
+	const struct machine *machine;          /* at the values of the command line */
+	const struct sweep *compiled;           /* as it is where params are not made tunable; NULL: they are not */
+	time_t began;
+	const struct record *record;
+	struct param *param;
+	size_t params, rows, rows_room;
+	const char **text;                      /* rows x params */
+	size_t *variant_of;                     /* row -> variant */
+	struct variant *variant;
+	size_t variants;
+	FILE *to;                               /* of the first process: */
+	struct journal *journal;
+	char **line, *drawn;                    /* drawn: the lines for a picture */
+	size_t drawn_length;
+	FILE *to_draw;                          /* NULL: there is none */
+	size_t written, done, before, failed;   /* before: done when it began */
+};
+
+const char *sweep_value(const struct sweep *s, size_t row, size_t param);       /* as it is printed */
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
 	      FILE *to, struct workers w);              /* exit status */
 /* Computed, by any thread; each ends with a newline */
 void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line);
 
-struct journal;
+void find_variants(struct sweep *s);
+bool is_name_of(const struct machine *m, const char *name);     /* of a tunable param */
+void build_variant(const struct sweep *s, struct variant *v);
+const struct machine *take_variant(struct sweep *s, struct variant *v);        /* NULL: v->error */
+void leave_variant(struct variant *v);
+enum { COMPILED_AT_MOST = 8 };                  /* variants; of more, what can be tunable is */
+const struct code *make_tunable(struct sweep *s, const struct code *c);        /* the C of the sweep from now on */
+
 struct journal *journal_open(const char *key, bool resume, size_t rows, char **line); /* line: those that are done */
 void journal_add(struct journal *j, size_t row, const char *line);
 void journal_end(struct journal *j);                    /* all is done: nothing stays */

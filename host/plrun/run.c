@@ -316,12 +316,13 @@ static void hold_sample(void *who, const double *u)
 	instance_hold(who, u);
 }
 
-char *run_steps(const struct job *job, watch *each, void *who)
+char *run_steps(struct job *job, watch *each, void *who)
 {
 	const struct machine *m = job->machine;
 	struct instance *s = instance_new(m);
 	struct course c = { .job = job, .s = s, .each = each, .who = who };
 	char *error = job->params ? tuning_error(job, s) : NULL;
+	job->tuned = !error;
 	if (!error) {
 		c.sizes = sizes_new(job);
 		c.out = need(malloc(sizeof *c.out * STEPS_AT_ONCE * (size_t)(m->outputs + 1)));

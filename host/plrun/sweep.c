@@ -1,56 +1,18 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A run for each row of params, and a line about each: its number, the params, of every output the last value, the root
  * mean square and, with --peak, the largest size, of all rows from t = 0 on, then how it ended.
- *
- * Tunable params go into an instance. The values of the others, and a `step` where nothing is tunable, make a variant:
- * a model of its own, compiled when the first of its rows is reached and dropped with the last. */
+ * Tunable params go into an instance, others into a variant of the model. */
 #define _GNU_SOURCE
 #include "plrun.h"
 
 #include <errno.h>
-#include <math.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-struct variant {
-	size_t row;                             /* the first that has it */
-	size_t left;                            /* rows that are still to come */
-	pthread_mutex_t busy;
-	bool tried;
-	struct machine *machine;                /* NULL, tried: `error` */
-	char *error;
-};
-
-struct param {
-	const char *name;
-	bool tuned, step;                       /* not tuned: by plgen */
-};
-
-struct sweep {
-	const struct toolchain *tools;
-	const struct options *options;
-	const struct machine *machine;          /* at the values of the command line */
-	time_t began;
-	const struct record *record;
-	struct param *param;
-	size_t params, rows, rows_room;
-	const char **text;                      /* rows x params */
-	size_t *variant_of;                     /* row -> variant */
-	struct variant *variant;
-	size_t variants;
-	FILE *to;                               /* of the first process: */
-	struct journal *journal;
-	char **line, *drawn;                    /* drawn: the lines for a picture */
-	size_t drawn_length;
-	FILE *to_draw;                          /* NULL: there is none */
-	size_t written, done, before, failed;   /* before: done when it began */
-};
-
 /* ---- the table ---- */
 
-static const char *value_of(const struct sweep *s, size_t row, size_t param)
+const char *sweep_value(const struct sweep *s, size_t row, size_t param)
 {
 	return s->text[row * s->params + param];
 }
@@ -132,122 +94,7 @@ static void read_table(struct sweep *s, const struct code *c)
 		fail_at((struct place){ t.at.path, t.at.number + 1, "", 0, 0 }, NULL,
 			"expected rows of params, found the end of the file");
 	for (size_t i = 0; i < s->params; i++)
-		check_param(s, &t, i, value_of(s, 0, i));
-}
-
-/* ---- variants ---- */
-
-static bool same_variant(const struct sweep *s, size_t a, size_t b)
-{
-	for (size_t i = 0; i < s->params; i++)
-		if (!s->param[i].tuned && strcmp(value_of(s, a, i), value_of(s, b, i)) != 0)
-			return false;
-	return true;
-}
-
-static const struct sweep *sorted;              /* whose rows are put in order; before any thread begins */
-
-static int by_variant(const void *a, const void *b)
-{
-	size_t one = *(const size_t *)a, other = *(const size_t *)b;
-	for (size_t i = 0; i < sorted->params; i++) {
-		int order = sorted->param[i].tuned ? 0
-			  : strcmp(value_of(sorted, one, i), value_of(sorted, other, i));
-		if (order)
-			return order;
-	}
-	return one < other ? -1 : 1;
-}
-
-/* `left` counts rows of all processes: of one of several a variant may stay loaded to the end. */
-static void find_variants(struct sweep *s)
-{
-	size_t *order = need(calloc(s->rows, sizeof *order));
-	s->variant_of = need(calloc(s->rows, sizeof *s->variant_of));
-	s->variant = need(calloc(s->rows, sizeof *s->variant));
-	for (size_t i = 0; i < s->rows; i++)
-		order[i] = i;
-	sorted = s;
-	qsort(order, s->rows, sizeof *order, by_variant);
-	for (size_t i = 0; i < s->rows; i++) {
-		if (i == 0 || !same_variant(s, order[i - 1], order[i])) {
-			s->variant[s->variants].row = order[i];
-			pthread_mutex_init(&s->variant[s->variants++].busy, NULL);
-		}
-		s->variant_of[order[i]] = s->variants - 1;
-		s->variant[s->variants - 1].left += s->options->histories ? 2 : 1;
-	}
-	free(order);
-}
-
-/* The first line of what plgen or the compiler said */
-static char *first_line(const char *text)
-{
-	const char *error = strstr(text, "error: ");
-	text = error ? error + strlen("error: ") : text;
-	return need(strndup(text, strcspn(text, "\n")));
-}
-
-static bool is_name_of(const struct machine *m, const char *name)
-{
-	for (int k = 0; k < m->params; k++)
-		if (strcmp(m->param_names[k], name) == 0)
-			return true;
-	return false;
-}
-
-static void build_variant(struct sweep *s, struct variant *v)
-{
-	const struct options *o = s->options;
-	const char **definition = need(calloc(s->params + o->definitions, sizeof *definition));
-	struct options with = *o;
-	size_t count = 0;
-	int status;
-	with.passed = need(calloc(o->passed_count + 2, sizeof *with.passed));
-	memcpy(with.passed, o->passed, o->passed_count * sizeof *o->passed);
-	double number;
-	for (size_t i = 0; i < o->definitions; i++) {
-		if (!is_name_of(s->machine, o->definition[i].name) || !read_number(o->definition[i].value, &number))
-			definition[count++] = format("%s=%s", o->definition[i].name, o->definition[i].value);
-	}
-	for (size_t i = 0; i < s->params; i++) {
-		if (s->param[i].step && !s->param[i].tuned)
-			with.passed[with.passed_count++] = format("--step=%s", value_of(s, v->row, i));
-		else if (!s->param[i].tuned)
-			definition[count++] = format("%s=%s", s->param[i].name, value_of(s, v->row, i));
-	}
-	struct code *c = generate(s->tools, &with, definition, count, true, &v->error, &status);
-	if (c) {
-		v->machine = machine_of(s->tools, c, &v->error);
-		if (v->machine)
-			machine_show(v->machine, s->machine->view, o);
-		free(c->text);
-		free(c);
-	}
-	if (v->error)
-		v->error = first_line(v->error);
-	free(definition);
-	free(with.passed);
-}
-
-static const struct machine *take_variant(struct sweep *s, struct variant *v)
-{
-	pthread_mutex_lock(&v->busy);
-	if (!v->tried)
-		build_variant(s, v);
-	v->tried = true;
-	pthread_mutex_unlock(&v->busy);
-	return v->machine;
-}
-
-static void leave_variant(struct variant *v)
-{
-	pthread_mutex_lock(&v->busy);
-	if (--v->left == 0 && v->machine) {
-		machine_close(v->machine);
-		v->machine = NULL;
-	}
-	pthread_mutex_unlock(&v->busy);
+		check_param(s, &t, i, sweep_value(s, 0, i));
 }
 
 /* ---- a line ---- */
@@ -303,11 +150,11 @@ static double *params_of(const struct sweep *s, size_t row, const struct machine
 				set_param(m, k, s->options->definition[i].value, params);
 		for (size_t i = 0; i < s->params; i++)
 			if (strcmp(m->param_names[k], s->param[i].name) == 0)
-				set_param(m, k, value_of(s, row, i), params);
+				set_param(m, k, sweep_value(s, row, i), params);
 	}
 	for (size_t i = 0; i < s->params; i++)
 		if (s->param[i].step && s->param[i].tuned)
-			read_number(value_of(s, row, i), h);
+			read_number(sweep_value(s, row, i), h);
 	return params;
 }
 
@@ -320,8 +167,10 @@ static char *plan_row(const struct sweep *s, size_t row, const struct machine *m
 	return plan_run(job);
 }
 
+static char *run_compiled(const struct sweep *s, size_t row, watch *each, void *who);
+
 /* NULL, or how it went wrong */
-static char *run_row(struct sweep *s, size_t row, const struct machine *m, watch *each, void *who)
+static char *run_row(const struct sweep *s, size_t row, const struct machine *m, watch *each, void *who)
 {
 	struct job job;
 	double *params;
@@ -329,6 +178,17 @@ static char *run_row(struct sweep *s, size_t row, const struct machine *m, watch
 	if (!error)
 		error = run_steps(&job, each, who);
 	free(params);
+	return error && !job.tuned && s->compiled ? run_compiled(s->compiled, row, each, who) : error;
+}
+
+/* A row whose values the tunable model does not take, of a model of its own */
+static char *run_compiled(const struct sweep *s, size_t row, watch *each, void *who)
+{
+	struct variant own = { .row = row };
+	build_variant(s, &own);
+	char *error = own.machine ? run_row(s, row, own.machine, each, who) : own.error;
+	if (own.machine)
+		machine_close(own.machine);
 	return error;
 }
 
@@ -338,7 +198,7 @@ static void print_line(FILE *to, const struct sweep *s, size_t row, const struct
 	fprintf(to, "%zu", row + 1);
 	for (size_t i = 0; i < s->params; i++) {
 		putc(',', to);
-		print_cell(to, value_of(s, row, i));
+		print_cell(to, sweep_value(s, row, i));
 	}
 	for (int i = 0; i < s->machine->outputs; i++)
 		print_value(to, !error, stats->of[i].last, single);
@@ -419,7 +279,7 @@ static char *label_of(const struct sweep *s, size_t row)
 {
 	char *text = format("%s", "");
 	for (size_t i = 0; i < s->params; i++)
-		text = format("%s%s%s = %s", text, i ? ", " : "", s->param[i].name, value_of(s, row, i));
+		text = format("%s%s%s = %s", text, i ? ", " : "", s->param[i].name, sweep_value(s, row, i));
 	return text;
 }
 
@@ -575,6 +435,9 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 		fail(WRONG_USAGE, format("--histories draws at most %d runs, and these are %zu", PICTURE_CURVES,
 					 s.rows));
 	find_variants(&s);
+	c = make_tunable(&s, c);
+	m = s.machine;
+	o = s.options;
 	begin_output(&s, c, w);
 	workers_share(w, o->jobs, &s, s.rows, s.line, deliver, &s);
 	if (w.rank != 0)

@@ -37,7 +37,7 @@ _plgen() {
         -o | --depfile | --params | --input | --sweep | --a2l | --fmu | --page)
             mapfile -t COMPREPLY < <(compgen -f -- "$current"); return ;;
         --step | --tolerance | --prefix | --modes | --rows | --refresh | --solution | --until | --every | --jobs | \
-            --sensitivity | --column | --time | --title | --size | -D) return ;;
+            --sensitivity | --tunable | --column | --time | --title | --size | -D) return ;;
     esac
     case $current in
         -*)

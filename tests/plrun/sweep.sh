@@ -105,6 +105,35 @@ run car.spec --input road.csv --sweep k=12e3:2e4:3 --sweep m=250:350:3 --peak --
 { xmllint --noout map.svg && grep -q 'peak of comfort' map.svg && grep -q 'polygon' map.svg; } >log 2>&1
 result $? 'a map over two ranges'
 
+# ---- params that are not tunable, of more rows than are compiled: closed forms, and the compiled model ----
+cat >loose.spec <<'X'
+model loose
+param k = 4, m = 1
+coord x
+m*x'' + k*x = 0
+init x = 1
+step 0.1
+X
+# closed FILE START: x(5) of each k is START cos(5 sqrt k) within 1e-12
+closed() {
+	awk -F, -v start="$2" 'NR > 1 { want = (start ? start : $2 / 4) * cos(5 * sqrt($2)); d = $3 - want
+		if (d * d > 1e-24 || $NF != "ok") { print $0, want; bad = 1 } } END { exit bad || NR != 11 }' "$1" >>log
+}
+rm -rf "$XDG_CACHE_HOME"
+run loose.spec 5 --sweep k=1:10:10 --jobs 1 >loose.csv && closed loose.csv 1
+result $? 'made tunable: cos(5 sqrt(k)) within 1e-12'
+[ "$(ls "$XDG_CACHE_HOME"/plgen/loose-*.so | wc -l)" -eq 2 ]
+result $? '... and compiled once more, not ten times'
+sed 's/^init x = 1/init x = k\/4/' loose.spec >start.spec
+run start.spec 5 --sweep k=1:10:10 --jobs 1 >start.csv && closed start.csv 0
+result $? 'an initial value that reads the param is that of the row'
+run loose.spec 5 --sweep m=0:9:10 --jobs 1 >mass.csv
+echo 'm
+0' >zero.csv
+run loose.spec 5 --sweep zero.csv | sed 1d >expected
+sed -n 2p mass.csv >found
+same expected found 'a value that the tunable model does not take is one of a model of its own'
+
 # ---- units: values of params are in their own, tunable or not ----
 cat >fixed.spec <<'X'
 model units

@@ -14,6 +14,27 @@ const struct node *first_tuned(const struct node *node)
 	return NULL;
 }
 
+static bool is_of_tunables(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool is = s && (s->tuning.tuned || (s->value && is_of_tunables(s->value)));
+	for (int i = 0; i < node->children && !is; i++)
+		is = is_of_tunables(node->child[i]);
+	return is;
+}
+
+void refuse_what_stays(const struct spec *spec)
+{
+	const char *note = "by another value it would stay: --tunable is for what makes the same model as -D";
+	for (int i = 0; i < spec->initials; i++)
+		if (is_of_tunables(spec->initial[i].value))
+			say_error(spec->initial[i].at, note, "this initial value reads a tunable param");
+	if (spec->request.step && is_of_tunables(spec->request.step))
+		say_error(spec->request.step_at, note, "the step reads a tunable param");
+	if (spec->required.needs)
+		say_error(spec->required.need[0].at, note, "what meets a need depends on the values of params");
+}
+
 /* Each stands after what it is made of. */
 void spread_tuned(const struct spec *spec)
 {

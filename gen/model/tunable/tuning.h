@@ -70,6 +70,7 @@ void derive_params(struct spec *spec);
 /* ---- params.c: tunable params that the instance has ---- */
 
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
+void refuse_what_stays(const struct spec *spec); /* of the spec's values, where tunable params are other ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
 const struct node *first_tuned(const struct node *node);
 int  param_of_input(const struct spec *spec, int input);   /* -1: it is an input of the spec */
