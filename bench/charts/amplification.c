@@ -39,32 +39,6 @@ void free_oscillator(struct free_motion *m, double w, double zeta)
 	free_motion_of(m, "oscillator", 1, A);
 }
 
-static real zeta_by_hand, ratio_by_hand;
-
-static void oscillator(real t, const real *y, const real *u, real *dydt)
-{
-	(void)t, (void)u;
-	dydt[0] = y[1];
-	dydt[1] = -y[0] - 2 * zeta_by_hand * y[1];
-}
-
-static void its_operator(const struct system *s, int which, real *A)
-{
-	(void)s, (void)which;
-	A[1] = 1;
-	A[2] = -ratio_by_hand * ratio_by_hand;
-	A[3] = -2 * zeta_by_hand;
-}
-
-const struct system *oscillator_by_hand(double zeta, double ratio)
-{
-	static const struct system system = {.name = "oscillator", .states = 2, .equations = oscillator,
-	                                     .linear = its_operator};
-	zeta_by_hand = (real)zeta;
-	ratio_by_hand = (real)ratio;
-	return &system;
-}
-
 /* ---- eigenvalues ---- */
 
 static int by_modulus(const void *a, const void *b)
@@ -236,12 +210,38 @@ int amplification(struct free_motion *m, const struct method *method, double h, 
 
 /* ---- of ours ---- */
 
-int amplification_by_hand(const struct system *s, const char *scheme, double h, double complex *eigenvalue)
+/* Of the linear system that is asked for */
+static struct { int size; real A[MOST_STATES * MOST_STATES], exact[MOST_STATES * MOST_STATES]; } by_hand;
+
+static void linear_equations(real t, const real *y, const real *u, real *dydt)
 {
-	const int size = s->states;
-	const bool flow = strcmp(scheme, "flow") == 0;
+	(void)t, (void)u;
+	for (int i = 0; i < by_hand.size; i++) {
+		dydt[i] = 0;
+		for (int j = 0; j < by_hand.size; j++)
+			dydt[i] += by_hand.A[i * by_hand.size + j] * y[j];
+	}
+}
+
+static void linear_operator(const struct system *s, int which, real *A)
+{
+	(void)which;
+	memcpy(A, by_hand.exact, sizeof *A * (size_t)(s->states * s->states));
+}
+
+int amplification_by_hand(int size, const real *A, const real *exact, const char *scheme, double h,
+                          double complex *eigenvalue)
+{
+	const bool flow = strcmp(scheme, "flow") == 0, pl = strcmp(scheme, "pl") == 0;
+	const struct system system = {.name = scheme, .states = size, .equations = linear_equations,
+	                              .linear = linear_operator}, *s = &system;
 	double matrix[MOST_STATES * MOST_STATES];
-	struct hand *hand = hand_new(s, flow ? "etd1" : scheme, (real)h);
+	by_hand.size = size;
+	for (int i = 0; i < size * size; i++) {
+		by_hand.A[i] = A[i];
+		by_hand.exact[i] = pl && i / size % (size / 2) != i % (size / 2) ? 0 : exact[i];
+	}
+	struct hand *hand = hand_new(s, flow || pl ? "etd1" : scheme, (real)h);
 	for (int j = 0; j < size; j++) {
 		real y[HAND_MOST] = {0};
 		y[j] = 1;
@@ -294,9 +294,11 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 int oscillator_eigenvalues(const struct subject *s, double wh, double complex *eigenvalue)
 {
 	struct free_motion m;
-	if (!s->method)
-		return amplification_by_hand(oscillator_by_hand(s->zeta, strcmp(s->scheme, "flow") == 0 ? 1 : s->ratio),
+	if (!s->method) {
+		const real ratio = strcmp(s->scheme, "flow") == 0 ? 1 : (real)s->ratio, damping = -2 * (real)s->zeta;
+		return amplification_by_hand(2, (real[]){0, 1, -1, damping}, (real[]){0, 1, -ratio * ratio, damping},
 		                             s->scheme, wh, eigenvalue);
+	}
 	free_oscillator(&m, 1, s->zeta);
 	return amplification(&m, s->method, wh, eigenvalue);
 }

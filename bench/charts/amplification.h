@@ -26,9 +26,6 @@ struct free_motion {
 };
 void free_motion_of(struct free_motion *m, const char *name, int n, const double *A);
 void free_oscillator(struct free_motion *m, double w, double zeta);     /* x'' + 2 zeta w x' + w^2 x = 0 */
-/* the same with w = 1 under an operator of another frequency: x'' + 2 zeta x' + ratio^2 x is exact, (ratio^2 - 1) x the
- * remainder; it stays until the next call */
-const struct system *oscillator_by_hand(double zeta, double ratio);
 /* The schemes that have one */
 enum { REMAINDER_SCHEMES = 7 };
 extern const char *const remainder_schemes[REMAINDER_SCHEMES];
@@ -37,9 +34,10 @@ extern const char *const remainder_schemes[REMAINDER_SCHEMES];
  * finite. */
 int eigenvalues_of(int size, const double *matrix, double complex *eigenvalue);
 int amplification(struct free_motion *m, const struct method *method, double h, double complex *eigenvalue);
-/* The same of the schemes by hand; scheme "flow": e^{A h}, A the operator of the system, whose `equations` are
- * linear */
-int amplification_by_hand(const struct system *s, const char *scheme, double h, double complex *eigenvalue);
+/* The same of the schemes by hand on y' = A y, of which the operator `exact` is exact and the rest the remainder;
+ * scheme "flow": e^{exact h}; pl: etd1, exact but for what couples coordinates */
+int amplification_by_hand(int size, const real *A, const real *exact, const char *scheme, double h,
+                          double complex *eigenvalue);
 /* And of generated code, whose step is linear or nearly so about 0: from unit states times `size` */
 int amplification_of_model(const pl_model *model, double size, double complex *eigenvalue);
 double largest(int count, const double complex *eigenvalue);            /* modulus; NAN where there is none */

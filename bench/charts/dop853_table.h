@@ -102,18 +102,4 @@ static const double dop853_d[DOP853_DENSE][DOP853_STAGES + 1] = {
 	  [15] = -0.39177261675615439165231486172e+02, [16] = -0.14972683625798562581422125276e+03 },
 };
 
-/* The pair of Dormand and Prince, J. Computational and Applied Mathematics 6 (1980) 19-26: the last row is the step, of
- * order 5 */
-enum { DORMAND_STAGES = 7 };
-static const double dormand_c[DORMAND_STAGES] = { 0, 1. / 5, 3. / 10, 4. / 5, 8. / 9, 1, 1 };
-static const double dormand_a[DORMAND_STAGES][DORMAND_STAGES - 1] = {
-	{ 0 },
-	{ 1. / 5 },
-	{ 3. / 40, 9. / 40 },
-	{ 44. / 45, -56. / 15, 32. / 9 },
-	{ 19372. / 6561, -25360. / 2187, 64448. / 6561, -212. / 729 },
-	{ 9017. / 3168, -355. / 33, 46732. / 5247, 49. / 176, -5103. / 18656 },
-	{ 35. / 384, 0, 500. / 1113, 125. / 192, -2187. / 6784, 11. / 84 },
-};
-
 #endif

@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Dormand-Prince 5(4): Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, table II.5.2, written
- * plainly. */
+/* Dormand-Prince 5(4), with its own step control. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "adaptive.h"
+
+#define DORMAND_TYPE struct adaptive
+#define DORMAND_SLOPES slope
+#include "dormand_step.h"
 
 struct dormand {
 	struct adaptive adaptive;
@@ -51,40 +54,15 @@ static bool dormand_begin(struct adaptive *a, double t, const double *y)
 static double dormand_try(struct dormand *d, double h)
 {
 	struct adaptive *a = &d->adaptive;
-	const int size = a->size;
-	const double t = d->t, *restrict y = d->y;
-	double *restrict k1 = d->k[0], *restrict k2 = d->k[1], *restrict k3 = d->k[2], *restrict k4 = d->k[3],
-		*restrict k5 = d->k[4];
-	double *restrict k6 = d->k[5], *restrict k7 = d->k[6], *restrict x = d->next;
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (1.0 / 5.0 * k1[i]);
-	slope(a, t + h * (1.0 / 5.0), x, k2);
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (3.0 / 40.0 * k1[i] + 9.0 / 40.0 * k2[i]);
-	slope(a, t + h * (3.0 / 10.0), x, k3);
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (44.0 / 45.0 * k1[i] - 56.0 / 15.0 * k2[i] + 32.0 / 9.0 * k3[i]);
-	slope(a, t + h * (4.0 / 5.0), x, k4);
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (19372.0 / 6561.0 * k1[i] - 25360.0 / 2187.0 * k2[i] + 64448.0 / 6561.0 * k3[i] -
-		                   212.0 / 729.0 * k4[i]);
-	slope(a, t + h * (8.0 / 9.0), x, k5);
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (9017.0 / 3168.0 * k1[i] - 355.0 / 33.0 * k2[i] + 46732.0 / 5247.0 * k3[i] +
-		                   49.0 / 176.0 * k4[i] - 5103.0 / 18656.0 * k5[i]);
-	slope(a, t + h, x, k6);
-	for (int i = 0; i < size; i++)
-		x[i] = y[i] + h * (35.0 / 384.0 * k1[i] + 500.0 / 1113.0 * k3[i] + 125.0 / 192.0 * k4[i] -
-		                   2187.0 / 6784.0 * k5[i] + 11.0 / 84.0 * k6[i]);
-	slope(a, t + h, x, k7);
+	const double *y = d->y, *x = d->next;
 	double sum = 0.0;
-	for (int i = 0; i < size; i++) {
-		const double error = h * (71.0 / 57600.0 * k1[i] - 71.0 / 16695.0 * k3[i] + 71.0 / 1920.0 * k4[i] -
-		                          17253.0 / 339200.0 * k5[i] + 22.0 / 525.0 * k6[i] - 1.0 / 40.0 * k7[i]);
-		const double share = error / (d->tolerance * (a->scale[i] + fmax(fabs(y[i]), fabs(x[i]))));
+	dormand_stages(a, a->size, d->t, h, y, d->k, d->next);
+	for (int i = 0; i < a->size; i++) {
+		const double share = dormand_error(h, d->k, i) /
+		                     (d->tolerance * (a->scale[i] + fmax(fabs(y[i]), fabs(x[i]))));
 		sum += share * share;
 	}
-	return sqrt(sum / size);
+	return sqrt(sum / a->size);
 }
 
 /* The end of the step becomes the start of the next; the first slope too (first same as last), but k7 stays for the
@@ -124,21 +102,6 @@ static bool dormand_step(struct dormand *d, int *tries)
 	return false;
 }
 
-/* Of fourth order, from the stages that there are: II.6 of volume I; the same as that of ode45 */
-static void dormand_interpolate(const struct dormand *d, double t, double *y)
-{
-	const double x = d->last > 0.0 ? (t - d->from) / d->last : 0.0, h = d->last * x;
-	const double b1 = h * (1.0 + x * (-183.0 / 64.0 + x * (37.0 / 12.0 - x * (145.0 / 128.0))));
-	const double b3 = h * x * (1500.0 / 371.0 + x * (-1000.0 / 159.0 + x * (1000.0 / 371.0)));
-	const double b4 = h * x * (-125.0 / 32.0 + x * (125.0 / 12.0 - x * (375.0 / 64.0)));
-	const double b5 = h * x * (9477.0 / 3392.0 + x * (-729.0 / 106.0 + x * (25515.0 / 6784.0)));
-	const double b6 = h * x * (-11.0 / 7.0 + x * (11.0 / 3.0 - x * (55.0 / 28.0)));
-	const double b7 = h * x * (3.0 / 2.0 + x * (-4.0 + x * (5.0 / 2.0)));
-	for (int i = 0; i < d->adaptive.size; i++)
-		y[i] = d->start[i] + (b1 * d->k[0][i] + b3 * d->k[2][i] + b4 * d->k[3][i] + b5 * d->k[4][i] +
-		                      b6 * d->k[5][i] + b7 * d->k[6][i]);
-}
-
 static bool dormand_reach(struct adaptive *a, double end, double *y)
 {
 	struct dormand *d = (struct dormand *)a;
@@ -148,7 +111,7 @@ static bool dormand_reach(struct adaptive *a, double end, double *y)
 	while (d->t < end)
 		if (!dormand_step(d, &tries))
 			return false;
-	dormand_interpolate(d, end, y);
+	dormand_inside(a->size, d->last, d->last > 0.0 ? (end - d->from) / d->last : 0.0, d->start, d->k, y);
 	return true;
 }
 

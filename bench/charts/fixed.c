@@ -20,8 +20,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dop853_table.h"
 #include "fixed.h"
+
+#define DORMAND_TYPE struct fixed
+#define DORMAND_SLOPES slope
+#include "dormand_step.h"
 
 /* ---- explicit methods ---- */
 
@@ -100,15 +103,7 @@ INLINE bool dormand_prince(struct fixed *f, struct part *p, double t, double *st
 	const int n = f->n, size = 2 * n;
 	double *x = f->work[7];
 	memcpy(f->work[0], state + n, sizeof *x * (size_t)size);
-	for (int stage = 1; stage < DORMAND_STAGES; stage++) {
-		for (int i = 0; i < size; i++) {
-			double sum = 0;
-			for (int j = 0; j < stage; j++)
-				sum += dormand_a[stage][j] * f->work[j][i];
-			x[i] = state[i] + p->h * sum;
-		}
-		slope(f, t + dormand_c[stage] * p->h, x, f->work[stage]);
-	}
+	dormand_stages(f, size, t, p->h, state, f->work, x);
 	memcpy(state, x, sizeof *x * (size_t)size);
 	memcpy(state + size, f->work[6] + n, sizeof *x * (size_t)n);
 	return true;

@@ -171,61 +171,22 @@ static const struct hard_case *case_find(const char *name)
 	leave(name, "no case of hard is called that");
 }
 
-/* ---- histories ---- */
-
-struct history {
-	int states, units;
-	double *y;                              /* [units][states], at the ends of units */
-	double scale[2];                        /* of displacements and velocities */
-};
-
-static void set_scales(struct history *h, const struct problem *p, double least_v)
+/* What is true at the ends of units; and the problem's scales, which are the history's */
+static struct truth *history_of(const struct hard_case *c, struct problem *p)
 {
-	h->scale[0] = 0;
-	h->scale[1] = least_v;
-	for (int i = 0; i < p->n; i++) {
-		h->scale[0] = fmax(h->scale[0], fabs(p->start[i]));
-		h->scale[1] = fmax(h->scale[1], fabs(p->start[p->n + i]));
+	struct truth *t = c->exact ? truth_new(p) : truth_of(p);
+	for (int k = 0; k < t->units && c->exact; k++) {
+		quad y[MOST_STATES] = { 0 };
+		c->exact(c->off, (k + 1) * (quad)c->unit, y);
+		for (int i = 0; i < 2 * p->n; i++)
+			t->at_end[k * 2 * p->n + i] = (double)y[i];
 	}
-	for (int k = 0; k < h->units * h->states; k++) {
-		double *scale = &h->scale[k % h->states >= p->n];
-		*scale = fmax(*scale, fabs(h->y[k]));
-	}
-}
-
-/* And the problem's scales, which are the history's */
-static struct history history_of(const struct hard_case *c, struct problem *p)
-{
-	struct history h = { 2 * p->n, p->units, room_for((size_t)p->units * 2 * (size_t)p->n, sizeof(double)), { 0 } };
-	if (c->exact) {
-		for (int k = 0; k < h.units; k++) {
-			quad y[MOST_STATES] = { 0 };
-			c->exact(c->off, (k + 1) * (quad)c->unit, y);
-			for (int i = 0; i < h.states; i++)
-				h.y[k * h.states + i] = (double)y[i];
-		}
-		set_scales(&h, p, c->least_v);
-	} else {
-		struct truth *truth = truth_of(p);
-		say_progress("hard: %s: two roads to what is true agree to %.2g", c->name, truth->agreement);
-		memcpy(h.y, truth->at_end, (size_t)(h.units * h.states) * sizeof *h.y);
-		memcpy(h.scale, (double[]){ truth->scale_q, fmax(truth->scale_v, c->least_v) }, sizeof h.scale);
-		truth_free(truth);
-	}
-	p->scale_q = h.scale[0];
-	p->scale_v = h.scale[1];
-	return h;
-}
-
-static double error_of_row(const struct history *h, int unit, const double *y)
-{
-	double largest = 0;
-	for (int i = 0; i < h->states; i++) {
-		const double e = fabs(y[i] - h->y[unit * h->states + i]) / h->scale[i >= h->states / 2];
-		if (!(e <= largest))            /* and what is not a number */
-			largest = e;
-	}
-	return largest;
+	if (c->exact)
+		truth_scales(p, t);
+	else
+		say_progress("hard: %s: two roads to what is true agree to %.2g", c->name, t->agreement);
+	p->scale_v = t->scale_v = fmax(t->scale_v, c->least_v);
+	return t;
 }
 
 /* ---- right-hand sides, counted: some methods on some cases would go on for days ---- */
@@ -256,14 +217,14 @@ static struct cell cell_of_error(double error)
 }
 
 /* Until the end, or to where it is hopeless */
-static struct cell follow(struct run *run, const struct history *h)
+static struct cell follow(struct run *run, const struct truth *t)
 {
 	double y[MOST_STATES], largest = 0;
 	run->restart(run);
-	for (int k = 0; k < h->units; k++) {
+	for (int k = 0; k < t->units; k++) {
 		const bool good = run->advance(run, 1, NULL);
 		run->get(run, y);
-		const double e = error_of_row(h, k, y);
+		const double e = truth_farther(0, t, k, y);
 		if (!good && isfinite(e))
 			return (struct cell){ NAN, "gave up" };
 		if (!(e <= largest))
@@ -274,7 +235,7 @@ static struct cell follow(struct run *run, const struct history *h)
 	return cell_of_error(largest);
 }
 
-static struct cell try_method(const struct method *m, const struct problem *p, const struct history *h, double setting,
+static struct cell try_method(const struct method *m, const struct problem *p, const struct truth *t, double setting,
                               const char *file, long most_evaluations)
 {
 	struct problem asked = *p;
@@ -289,7 +250,7 @@ static struct cell try_method(const struct method *m, const struct problem *p, c
 	struct run *run = file ? generated_open(m, p, file) : m->open(m, &asked, setting);
 	if (!run)
 		return (struct cell){ NAN, "refused" };
-	const struct cell cell = follow(run, h);
+	const struct cell cell = follow(run, t);
 	run->close(run);
 	return cell;
 }
@@ -308,25 +269,25 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 	say_progress("hard: %s: %s %g: %s", c->name, m->name, setting, cell.word);
 }
 
-static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h,
+static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,
                      const struct method *m)
 {
 	const double once[] = { tolerance, 0 };
 	for (const double *setting = m->tolerance ? once : c->steps; *setting > 0; setting++)
-		print_cell(out, c, m, *setting, try_method(m, p, h, *setting, NULL, c->most_evaluations), m->settings);
+		print_cell(out, c, m, *setting, try_method(m, p, t, *setting, NULL, c->most_evaluations), m->settings);
 }
 
-static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h)
+static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t)
 {
 	const struct method *const *const lists[] = { fixed_methods, structural_methods, adaptive_methods,
 	                                              propagator_methods };
 	for (int k = 0; k < 4; k++)
 		for (const struct method *const *m = lists[k]; *m; m++)
-			try_peer(out, c, p, h, *m);
-	try_peer(out, c, p, h, &residues_naive);
+			try_peer(out, c, p, t, *m);
+	try_peer(out, c, p, t, &residues_naive);
 }
 
-static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct history *h,
+static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,
                      const char *name, double step, const char *file)
 {
 	const struct method m = { .name = name, .family = OURS };
@@ -335,7 +296,7 @@ static void try_ours(FILE *out, const struct hard_case *c, const struct problem 
 		return;
 	}
 	char *refusal = variant_refused(file);
-	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, h, step, file,
+	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, t, step, file,
 		c->most_evaluations);
 	print_cell(out, c, &m, step, cell, refusal);
 	free(refusal);
@@ -357,19 +318,19 @@ int main(int argc, char **argv)
 	FILE *list = file_in(argv[0], "hard.list", "r"), *out = scales ? stdout : table_open(argv[1], "hard_raw.csv",
 		"case,method,family,setting_kind,setting,error,word,settings");
 	struct problem *p = NULL;
-	struct history h = { 0 };
+	struct truth *t = NULL;
 	while (fgets(line, sizeof line, list)) {
 		split_line("hard", line, 4, field);
 		const struct hard_case *c = case_find(field[0]);
 		if (strcmp(field[1], "problem") == 0) {
 			p = problem_of(c, field[3], quick);
-			h = history_of(c, p);
+			t = history_of(c, p);
 			if (scales)
 				put_scales(out, p, c->name, field[3]);
 			else
-				try_peers(out, c, p, &h);
+				try_peers(out, c, p, t);
 		} else if (p && !scales) {
-			try_ours(out, c, p, &h, field[1], atof(field[2]), field[3]);
+			try_ours(out, c, p, t, field[1], atof(field[2]), field[3]);
 		}
 	}
 	fclose(list);

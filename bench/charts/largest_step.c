@@ -59,39 +59,6 @@ static void entry(FILE *csv, const char *model, const char *method, const char *
 
 /* ---- linear models ---- */
 
-static const double *matrix_by_hand;    /* of the model that `linear_by_hand` is */
-static int coordinates_by_hand;
-
-static void linear_equations(real t, const real *y, const real *u, real *dydt)
-{
-	const int size = 2 * coordinates_by_hand;
-	(void)t, (void)u;
-	for (int i = 0; i < size; i++) {
-		dydt[i] = 0;
-		for (int j = 0; j < size; j++)
-			dydt[i] += (real)matrix_by_hand[i * size + j] * y[j];
-	}
-}
-
-static void whole_operator(const struct system *s, int which, real *A)
-{
-	const int size = s->states;
-	(void)which;
-	for (int i = 0; i < size * size; i++)
-		A[i] = (real)matrix_by_hand[i];
-}
-
-/* What scheme pl keeps exact: a coordinate's own terms */
-static void own_operator(const struct system *s, int which, real *A)
-{
-	const int size = s->states, n = size / 2;
-	whole_operator(s, which, A);
-	for (int i = 0; i < size; i++)
-		for (int j = 0; j < size; j++)
-			if (i % n != j % n)
-				A[i * size + j] = 0;
-}
-
 struct free_subject {
 	struct free_motion *motion;
 	const struct method *method;    /* or NULL, and: */
@@ -104,13 +71,10 @@ static double growth(const void *of, double h)
 	double complex eigenvalue[MOST_EIGENVALUES];
 	if (s->method)
 		return largest(amplification(s->motion, s->method, h, eigenvalue), eigenvalue);
-	const bool pl = strcmp(s->scheme, "pl") == 0;
-	const struct system system = {.name = s->scheme, .states = 2 * s->motion->problem.n,
-	                              .equations = linear_equations,
-	                              .linear = pl ? own_operator : whole_operator};
-	matrix_by_hand = s->motion->A;
-	coordinates_by_hand = s->motion->problem.n;
-	return largest(amplification_by_hand(&system, pl ? "etd1" : "flow", h, eigenvalue), eigenvalue);
+	real A[MOST_STATES * MOST_STATES];
+	for (int i = 0; i < MOST_STATES * MOST_STATES; i++)
+		A[i] = (real)s->motion->A[i];
+	return largest(amplification_by_hand(2 * s->motion->problem.n, A, A, s->scheme, h, eigenvalue), eigenvalue);
 }
 
 /* Weak growth comes in sight slowly: it is there at smaller steps too, below what rounding lets see */

@@ -16,37 +16,13 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- the two masses ---- */
-
-static struct { real k1, k2; } masses;
-
-static void two_masses(real t, const real *y, const real *u, real *dydt)
-{
-	(void)t, (void)u;
-	for (int i = 0; i < 2; i++) {
-		dydt[i] = y[2 + i];
-		dydt[2 + i] = -(masses.k1 + masses.k2) * y[i] + masses.k2 * y[1 - i];
-	}
-}
-
-static void own_terms(const struct system *s, int which, real *A)
-{
-	(void)s, (void)which;
-	for (int i = 0; i < 2; i++) {
-		A[i * 4 + 2 + i] = 1;
-		A[(2 + i) * 4 + i] = -(masses.k1 + masses.k2);
-	}
-}
-
-static const struct system pair = {.name = "pair", .states = 4, .equations = two_masses, .linear = own_terms};
-
-/* w = 1 */
+/* Of the two masses, w = 1 */
 static double growth_of_pl(double coupling, double wh)
 {
 	double complex eigenvalue[MOST_EIGENVALUES];
-	masses.k1 = 1 / (1 + (real)coupling);
-	masses.k2 = 1 - masses.k1;
-	return largest(amplification_by_hand(&pair, "etd1", wh, eigenvalue), eigenvalue);
+	const real k1 = 1 / (1 + (real)coupling), k2 = 1 - k1, both = k1 + k2;
+	const real A[] = {0, 0, 1, 0, 0, 0, 0, 1, -both, k2, 0, 0, k2, -both, 0, 0};
+	return largest(amplification_by_hand(4, A, A, "pl", wh, eigenvalue), eigenvalue);
 }
 
 /* ---- maps ---- */

@@ -6,8 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dop853_table.h"
 #include "papers.h"
+
+#define DORMAND_TYPE const struct problem
+#define DORMAND_SLOPES problem_slope
+#include "dormand_step.h"
 
 static const char source[] = "000";
 static const double whole = 30;             /* [s]: its histories */
@@ -31,21 +34,11 @@ static const struct method exact = { .name = "exact", .family = OURS, .linear_on
  * = 1e-6, and values between steps by the pair's continuous extension. */
 
 enum { STATES = 4 };
-/* Weights of order 5 less those of order 4 */
-static const double defect[DORMAND_STAGES] = { 71. / 57600, 0, -71. / 16695, 71. / 1920, -17253. / 339200, 22. / 525,
-                                       -1. / 40 };
-/* Of the continuous extension: powers 1 to 4 of the part of the step */
-static const double extension[DORMAND_STAGES][4] = {
-	{ 1, -183. / 64, 37. / 12, -145. / 128 }, { 0 }, { 0, 1500. / 371, -1000. / 159, 1000. / 371 },
-	{ 0, -125. / 32, 125. / 12, -375. / 64 }, { 0, 9477. / 3392, -729. / 106, 25515. / 6784 },
-	{ 0, -11. / 7, 11. / 3, -55. / 28 }, { 0, 3. / 2, -4, 5. / 2 },
-};
 static const double relative = 1e-3, absolute = 1e-6;
 
 struct ode45 {
 	const struct problem *p;
-	double t, h, y[STATES], k[DORMAND_STAGES][STATES];
-	double next[STATES];
+	double t, h, y[STATES], next[STATES], slope[7][STATES], *k[7];
 };
 
 static double weighted(const double *x, const double *a, const double *b)
@@ -60,32 +53,10 @@ static double weighted(const double *x, const double *a, const double *b)
 static double attempt(struct ode45 *s)
 {
 	double off[STATES];
-	for (int stage = 1; stage < DORMAND_STAGES; stage++) {
-		for (int i = 0; i < STATES; i++) {
-			double sum = 0;
-			for (int j = 0; j < stage; j++)
-				sum += dormand_a[stage][j] * s->k[j][i];
-			s->next[i] = s->y[i] + s->h * sum;
-		}
-		problem_slope(s->p, s->t + dormand_c[stage] * s->h, s->next, s->k[stage]);
-	}
-	for (int i = 0; i < STATES; i++) {
-		off[i] = 0;
-		for (int j = 0; j < DORMAND_STAGES; j++)
-			off[i] += s->h * defect[j] * s->k[j][i];
-	}
+	dormand_stages(s->p, STATES, s->t, s->h, s->y, s->k, s->next);
+	for (int i = 0; i < STATES; i++)
+		off[i] = dormand_error(s->h, s->k, i);
 	return weighted(off, s->y, s->next) / relative;
-}
-
-static void inside(const struct ode45 *s, double part, double *y)
-{
-	for (int i = 0; i < STATES; i++) {
-		y[i] = s->y[i];
-		for (int j = 0; j < DORMAND_STAGES; j++)
-			y[i] += s->h * s->k[j][i] * part *
-				(extension[j][0] +
-				 part * (extension[j][1] + part * (extension[j][2] + part * extension[j][3])));
-	}
 }
 
 /* rows: at the end of each unit; how many steps it took */
@@ -95,6 +66,8 @@ static int ode45_solve(const struct problem *p, double *rows)
 	const double end = p->unit * p->units;
 	int taken = 0, row = 0;
 	memcpy(s.y, p->start, sizeof s.y);
+	for (int i = 0; i < 7; i++)
+		s.k[i] = s.slope[i];
 	problem_slope(p, 0, s.y, s.k[0]);
 	s.h = fmin(end / 10, 0.8 * pow(relative, 0.2) / weighted(s.k[0], s.y, s.y));
 	while (row < p->units) {
@@ -108,10 +81,10 @@ static int ode45_solve(const struct problem *p, double *rows)
 			failed = true;
 		}
 		for (; row < p->units && ((row + 1) * p->unit <= s.t + s.h || s.t + s.h >= end); row++)
-			inside(&s, ((row + 1) * p->unit - s.t) / s.h, rows + row * STATES);
+			dormand_inside(STATES, s.h, ((row + 1) * p->unit - s.t) / s.h, s.y, s.k, rows + row * STATES);
 		s.t += s.h;
 		memcpy(s.y, s.next, sizeof s.y);
-		memcpy(s.k[0], s.k[DORMAND_STAGES - 1], sizeof s.k[0]);
+		memcpy(s.k[0], s.k[6], sizeof s.slope[0]);
 		taken++;
 		if (!failed)
 			s.h *= fmin(5, 0.8 * pow(1 / error, 0.2));

@@ -343,7 +343,7 @@ static void between_crossings(const struct problem *p, void (*make)(struct hand_
 
 /* ---- the two roads ---- */
 
-static struct truth *new_truth(const struct problem *p)
+struct truth *truth_new(const struct problem *p)
 {
 	const size_t size = (size_t)p->units * 2 * (size_t)p->n;
 	struct truth *t = room_for(1, sizeof *t);
@@ -355,7 +355,7 @@ static struct truth *new_truth(const struct problem *p)
 }
 
 /* The problem learns them too: the second road is an integrator whose tolerances stand on them. */
-static void find_scales(struct problem *p, struct truth *t)
+void truth_scales(struct problem *p, struct truth *t)
 {
 	for (int k = -1; k < p->units; k++)
 		for (int i = 0; i < 2 * p->n; i++) {
@@ -367,8 +367,7 @@ static void find_scales(struct problem *p, struct truth *t)
 	p->scale_v = t->scale_v;
 }
 
-/* The largest of `most` and how far y is from the truth at the end of unit k; what is not a number stays */
-static double farther(double most, const struct truth *t, int k, const double *y)
+double truth_farther(double most, const struct truth *t, int k, const double *y)
 {
 	for (int i = 0; i < 2 * t->n; i++) {
 		const double off = fabs(y[i] - t->at_end[k * 2 * t->n + i]) / (i < t->n ? t->scale_q : t->scale_v);
@@ -382,7 +381,7 @@ static double elliptic_difference(const struct problem *p, const struct truth *t
 	double most = 0, y[2];
 	for (int k = 0; k < p->units; k++) {
 		pendulum_swing(p->start[0], (k + 1) * p->unit, y);
-		most = farther(most, t, k, y);
+		most = truth_farther(most, t, k, y);
 	}
 	return most;
 }
@@ -395,7 +394,7 @@ static double difference_at(const struct problem *p, const struct truth *t, cons
 	bool good = run;
 	for (int k = 0; k < p->units && good; k++) {
 		good = run->advance(run, 1, row);
-		most = farther(most, t, k, row);
+		most = truth_farther(most, t, k, row);
 	}
 	if (run)
 		run->close(run);
@@ -419,7 +418,7 @@ static double solver_difference(const struct problem *p, const struct truth *t, 
 static double extrapolation_difference(const struct problem *p, const struct truth *t)
 {
 	static const struct equations emitted = { NULL, as_emitted, 1e-15L, 0 };
-	struct truth *other = new_truth(p);
+	struct truth *other = truth_new(p);
 	extrapolated(p, &emitted, other);
 	const double most = truth_error(t, other->at_end);
 	truth_free(other);
@@ -440,7 +439,7 @@ static void solve(struct problem *p, struct truth *t)
 	if (p->linear) {
 		t->roads = "closed form in quadruple precision; NAME_rhs by extrapolation in long double";
 		closed_form(p, t);
-		find_scales(p, t);
+		truth_scales(p, t);
 		t->agreement = extrapolation_difference(p, t);
 		return;
 	}
@@ -455,7 +454,7 @@ static void solve(struct problem *p, struct truth *t)
 			: "NAME_rhs: extrapolation in long double; GSL rk8pd";
 		extrapolated(p, e, t);
 	}
-	find_scales(p, t);
+	truth_scales(p, t);
 	t->agreement = solver_difference(p, t, gears_of(p->name) ? 0 : e->parts);
 	if (strcmp(p->name, "pendulum") == 0) {
 		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
@@ -467,7 +466,7 @@ struct truth *truth_of(struct problem *p)
 {
 	if (2 * p->n + 3 > MOST)
 		leave(p->name, "truth: too many coordinates");
-	struct truth *t = new_truth(p);
+	struct truth *t = truth_new(p);
 	say_progress("%s: truth", p->name);
 	solve(p, t);
 	return t;
@@ -475,9 +474,9 @@ struct truth *truth_of(struct problem *p)
 
 struct truth *truth_by_extrapolation(struct problem *p)
 {
-	struct truth *t = new_truth(p);
+	struct truth *t = truth_new(p);
 	extrapolated(p, equations_of(p), t);
-	find_scales(p, t);
+	truth_scales(p, t);
 	return t;
 }
 
@@ -485,7 +484,7 @@ double truth_error(const struct truth *t, const double *rows)
 {
 	double most = 0;
 	for (int k = 0; k < t->units; k++)
-		most = farther(most, t, k, rows + k * 2 * t->n);
+		most = truth_farther(most, t, k, rows + k * 2 * t->n);
 	return most;
 }
 
