@@ -7,11 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <cvode/cvode.h>
-#include <nvector/nvector_serial.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
+#include "../cvode.h"
 #include "charts.h"
 #include "tap.h"
 
@@ -32,29 +29,17 @@ static void keep_largest(const struct problem *p, const double *y, double larges
 /* Of coordinates and of velocities over the history; false: CVODE gave up */
 static bool follow(struct problem *p, double largest[2])
 {
-	SUNContext context;
-	if (SUNContext_Create(NULL, &context) != 0)
-		return false;
-	N_Vector y = N_VNew_Serial(2 * p->n, context);
-	SUNMatrix jacobian = SUNDenseMatrix(2 * p->n, 2 * p->n, context);
-	SUNLinearSolver dense = SUNLinSol_Dense(y, jacobian, context);
-	void *memory = CVodeCreate(CV_BDF, context);
 	const double end = p->unit * p->units;
 	double t = 0;
-	memcpy(NV_DATA_S(y), p->start, 2 * (size_t)p->n * sizeof(double));
+	struct cvode c;
 	keep_largest(p, p->start, largest);
-	bool good = CVodeInit(memory, slope, 0, y) == 0 && CVodeSStolerances(memory, 1e-6, 1e-9) == 0 &&
-	            CVodeSetUserData(memory, p) == 0 && CVodeSetLinearSolver(memory, dense, jacobian) == 0 &&
-	            CVodeSetStopTime(memory, end) == 0;
+	bool good = cvode_open(&c, CV_BDF, 2 * p->n, p->start, slope, p, 1e-6, 1e-9, NULL) &&
+	            CVodeSetStopTime(c.memory, end) == 0;
 	while (good && t < end) {
-		good = CVode(memory, end, y, &t, CV_ONE_STEP) >= 0;
-		keep_largest(p, NV_DATA_S(y), largest);
+		good = CVode(c.memory, end, c.y, &t, CV_ONE_STEP) >= 0;
+		keep_largest(p, NV_DATA_S(c.y), largest);
 	}
-	CVodeFree(&memory);
-	SUNLinSolFree(dense);
-	SUNMatDestroy(jacobian);
-	N_VDestroy(y);
-	SUNContext_Free(&context);
+	cvode_close(&c);
 	return good;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_rhs of every linear model, by CVODE at rtol 1e-10, against the steps: within 1e-7 of the largest value so far,
  * over 30 s. The solver restarts where the loads change their formula, and where inputs get a new sample. */
+#include "../cvode.h"
 #include "linear.h"
 #include "tap.h"
 
@@ -9,15 +10,11 @@
 #include "ramped2_pl.h"
 #include "switched_pl.h"
 
-#include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
-enum { SECONDS = 30, MOST_STEPS = 10000000, MOST_STATES = 32 };
+enum { SECONDS = 30, MOST_STATES = 32 };
 
 static const double tolerance = 1e-7, relative = 1e-10;
 
@@ -29,8 +26,7 @@ struct subject {
     double u[4], start[2], t0;              /* inputs at the time t0, then their slopes */
     const double *change;
     int changes;
-    void *cvode;
-    N_Vector y;
+    struct cvode cvode;
     double limit;                           /* of the formula: at this time the next one holds */
 };
 
@@ -57,7 +53,7 @@ static bool advance(struct subject *s, double from, double to)
 {
     bool good = true;
     while (from < to && good) {
-        double goal = to, t = from;
+        double goal = to;
         for (int i = s->changes - 1; i >= 0; i--)
             if (s->change[i] > from && s->change[i] < goal)
                 goal = s->change[i];
@@ -66,9 +62,8 @@ static bool advance(struct subject *s, double from, double to)
         for (int i = 0; i < s->changes; i++)
             at_change = at_change || s->change[i] == from;
         if (at_change)
-            good = CVodeReInit(s->cvode, from, s->y) == CV_SUCCESS;
-        good = good && CVodeSetStopTime(s->cvode, goal) == CV_SUCCESS &&
-            CVode(s->cvode, goal, s->y, &t, CV_NORMAL) >= 0;
+            good = CVodeReInit(s->cvode.memory, from, s->cvode.y) == CV_SUCCESS;
+        good = good && cvode_until(&s->cvode, goal);
         from = goal;
     }
     return good;
@@ -80,24 +75,13 @@ static void judge(struct subject *s)
     const int every = (int)lround(0.5 / m->h), rows = 2 * SECONDS;
     double y[MOST_STATES], most[MOST_STATES] = {0}, worst = 0;
     double scale = 0;
-    SUNContext context;
-    SUNContext_Create(NULL, &context);
     void *state = calloc(1, m->size);
-    s->y = N_VNew_Serial(m->states, context);
-    N_Vector absolute = N_VNew_Serial(m->states, context);
-    SUNMatrix J = SUNDenseMatrix(m->states, m->states, context);
-    SUNLinearSolver solver = SUNLinSol_Dense(s->y, J, context);
     m->init(state);
-    m->get(state, N_VGetArrayPointer(s->y));
+    m->get(state, y);
     for (int i = 0; i < m->states; i++)
-        scale = fmax(scale, fabs(N_VGetArrayPointer(s->y)[i]));
-    for (int i = 0; i < m->states; i++)
-        N_VGetArrayPointer(absolute)[i] = relative * 1e-2 * (scale > 0 ? scale : 1);
-    s->cvode = CVodeCreate(CV_ADAMS, context);
-    bool good = CVodeInit(s->cvode, slope, 0, s->y) == CV_SUCCESS && CVodeSetUserData(s->cvode, s) == CV_SUCCESS &&
-                CVodeSVtolerances(s->cvode, relative, absolute) == CV_SUCCESS &&
-                    CVodeSetLinearSolver(s->cvode, solver, J) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(s->cvode, MOST_STEPS) == CV_SUCCESS;
+        scale = fmax(scale, fabs(y[i]));
+    bool good = cvode_open(&s->cvode, CV_ADAMS, m->states, y, slope, s, relative,
+        relative * 1e-2 * (scale > 0 ? scale : 1), NULL);
     unsigned seed = 1;
     for (int row = 0; row < rows && good; row++) {
         /* a ramp over the whole stretch: each step's sample lies on it */
@@ -122,20 +106,15 @@ static void judge(struct subject *s)
         memcpy(s->start, target, sizeof target);
         good = advance(s, s->t0, (row + 1) * every * m->h);
         for (int i = 0; i < m->states; i++) {
-            good = close_to(N_VGetArrayPointer(s->y)[i], y[i], tolerance * most[i], "%s, row %d, %s", m->name, row,
+            good = close_to(NV_Ith_S(s->cvode.y, i), y[i], tolerance * most[i], "%s, row %d, %s", m->name, row,
                 m->state_names[i]) && good;
             if (most[i] > 0)
-                worst = worse(worst, fabs(N_VGetArrayPointer(s->y)[i] - y[i]) / most[i]);
+                worst = worse(worst, fabs(N_VGetArrayPointer(s->cvode.y)[i] - y[i]) / most[i]);
         }
     }
     ok(good, "%s: CVODE at rtol 1e-10 agrees within %g over %d s", m->name, tolerance, SECONDS);
     note("%s: largest difference to CVODE %.3g", m->name, worst);
-    CVodeFree(&s->cvode);
-    SUNLinSolFree(solver);
-    SUNMatDestroy(J);
-    N_VDestroy(s->y);
-    N_VDestroy(absolute);
-    SUNContext_Free(&context);
+    cvode_close(&s->cvode);
     free(state);
 }
 

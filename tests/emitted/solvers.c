@@ -2,17 +2,14 @@
 /* 30 s of NAME_rhs, the equations as written, by CVODE (Adams; dense Newton) and ARKODE (explicit, order 8) against the
  * steps.  One problem is one integration: no restarts, a stop time where the results are compared, absolute
  * tolerances that follow each component's size. */
+#include "../cvode.h"
 #include "models.h"
 #include "tap.h"
 
 #include <arkode/arkode_erkstep.h>
-#include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 enum { SECONDS = 30, MOST_STEPS = 10000000 };
 
@@ -93,36 +90,21 @@ static double difference(const struct history *h, int row, N_Vector y)
     return worst;
 }
 
-/* Largest difference over the largest value of the component; NAN where the solver gives up.  At a stop time CVODE's
- * polynomial lands on the point; it is not interpolated. */
+/* Largest difference over the largest value of the component; NAN where the solver gives up */
 static double by_cvode(const struct history *h, double relative)
 {
     struct equations_from from = {h->of, 0};
-    SUNContext context;
-    SUNContext_Create(NULL, &context);
-    N_Vector y = start_of(h, context), tolerance = absolute_tolerance(h, relative, context);
-    SUNMatrix J = SUNDenseMatrix(h->states, h->states, context);
-    SUNLinearSolver solver = SUNLinSol_Dense(y, J, context);
-    void *cvode = CVodeCreate(CV_ADAMS, context);
-    bool good = CVodeInit(cvode, slope, 0, y) == CV_SUCCESS && CVodeSetUserData(cvode, &from) == CV_SUCCESS &&
-                CVodeSVtolerances(cvode, relative, tolerance) == CV_SUCCESS &&
-                    CVodeSetLinearSolver(cvode, solver, J) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(cvode, MOST_STEPS) == CV_SUCCESS;
-    double worst = 0, t = 0;
+    struct cvode c;
+    bool good = cvode_open(&c, CV_ADAMS, h->states, h->y, slope, &from, relative, relative * absolute, h->largest);
+    double worst = 0;
     long steps = 0;
     for (int row = 1; row <= h->rows && good; row++) {
-        const double goal = row * h->every * h->of->model->h;
-        good = CVodeSetStopTime(cvode, goal) == CV_SUCCESS && CVode(cvode, goal, y, &t, CV_NORMAL) >= 0;
-        worst = worse(worst, difference(h, row, y));
+        good = cvode_until(&c, row * h->every * h->of->model->h);
+        worst = worse(worst, difference(h, row, c.y));
     }
-    CVodeGetNumSteps(cvode, &steps);
+    CVodeGetNumSteps(c.memory, &steps);
     note("%s: CVODE at %.0e, %ld steps: largest difference %.3g", h->of->model->name, relative, steps, worst);
-    CVodeFree(&cvode);
-    SUNLinSolFree(solver);
-    SUNMatDestroy(J);
-    N_VDestroy(y);
-    N_VDestroy(tolerance);
-    SUNContext_Free(&context);
+    cvode_close(&c);
     return good ? worst : NAN;
 }
 

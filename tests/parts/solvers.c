@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models of parts against CVODE at rtol 1e-11, on their equations written here: within 1e-8 of each state's largest
  * value so far. The solver restarts where a formula changes and at each sample of a record. */
+#include "../cvode.h"
 #include "../emitted/tap.h"
 
 #include "plrt.h"
 
-#include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
-enum { MOST_STATES = 40, MOST_STEPS = 10000000, RESTARTS = 3 };
+enum { MOST_STATES = 40, RESTARTS = 3 };
 
 static const double tolerance = 1e-8, relative = 1e-11, pi = 3.14159265358979323846;
 
@@ -93,15 +90,12 @@ static int slope(realtype t, N_Vector y, N_Vector dydt, void *from)
 }
 
 /* From one time to the next, which is a change of formula at most at its end */
-static bool advance(void *cvode, N_Vector y, double from, double to, bool restart)
+static bool advance(struct cvode *c, double from, double to, bool restart)
 {
-    double t;
-    if (restart && CVodeReInit(cvode, from, y) != CV_SUCCESS)
-        return false;
-    return CVodeSetStopTime(cvode, to) == CV_SUCCESS && CVode(cvode, to, y, &t, CV_NORMAL) >= 0;
+    return !(restart && CVodeReInit(c->memory, from, c->y) != CV_SUCCESS) && cvode_until(c, to);
 }
 
-static bool follow(const struct subject *s, void *cvode, N_Vector y, void *state)
+static bool follow(const struct subject *s, struct cvode *c, void *state)
 {
     const pl_model *m = s->model;
     const int steps = (int)lround(s->seconds / m->h);
@@ -126,11 +120,11 @@ static bool follow(const struct subject *s, void *cvode, N_Vector y, void *state
             }
         m->step(state, m->inputs ? &next : NULL);
         m->get(state, now);
-        good = advance(cvode, y, k * m->h, (k + 1) * m->h, changed);
+        good = advance(c, k * m->h, (k + 1) * m->h, changed);
         for (int i = 0; i < m->states && good; i++) {
-            const double error = fabs(N_VGetArrayPointer(y)[i] - now[i]);
+            const double error = fabs(N_VGetArrayPointer(c->y)[i] - now[i]);
             most[i] = fmax(most[i], fabs(now[i]));
-            good = close_to(N_VGetArrayPointer(y)[i], now[i], tolerance * most[i] + 1e-15, "%s, step %d, %s", m->name,
+            good = close_to(NV_Ith_S(c->y, i), now[i], tolerance * most[i] + 1e-15, "%s, step %d, %s", m->name,
                 k, m->state_names[i]);
             if (most[i] > 1e-6 && !(error <= worst * most[i]))
                 worst = error / most[i];
@@ -144,26 +138,15 @@ static bool follow(const struct subject *s, void *cvode, N_Vector y, void *state
 static void judge(const struct subject *s)
 {
     const pl_model *m = s->model;
-    SUNContext context;
-    SUNContext_Create(NULL, &context);
     void *state = calloc(1, m->size);
-    N_Vector y = N_VNew_Serial(m->states, context);
-    SUNMatrix J = SUNDenseMatrix(m->states, m->states, context);
-    SUNLinearSolver solver = SUNLinSol_Dense(y, J, context);
+    double y[MOST_STATES];
+    struct cvode c;
     m->init(state);
-    m->get(state, N_VGetArrayPointer(y));
-    void *cvode = CVodeCreate(CV_ADAMS, context);
-    bool good = CVodeInit(cvode, slope, 0, y) == CV_SUCCESS && CVodeSetUserData(cvode, (void *)s) == CV_SUCCESS &&
-                CVodeSStolerances(cvode, relative, 1e-14) == CV_SUCCESS &&
-                    CVodeSetLinearSolver(cvode, solver, J) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(cvode, MOST_STEPS) == CV_SUCCESS;
-    good = good && follow(s, cvode, y, state);
+    m->get(state, y);
+    const bool good = cvode_open(&c, CV_ADAMS, m->states, y, slope, (void *)s, relative, 1e-14, NULL) &&
+        follow(s, &c, state);
     ok(good, "%s: CVODE on its equations agrees within %g over %g s", m->name, tolerance, s->seconds);
-    CVodeFree(&cvode);
-    SUNLinSolFree(solver);
-    SUNMatDestroy(J);
-    N_VDestroy(y);
-    SUNContext_Free(&context);
+    cvode_close(&c);
     free(state);
 }
 

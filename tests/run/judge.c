@@ -3,15 +3,13 @@
  * by hand, or against a closed form from event to event:
  *     judge MODEL WITHIN[%] UNTIL START LOAD
  * initial values times START, loads times LOAD. Prints the largest difference of the output and what is allowed. */
-#include <cvode/cvode.h>
+#include "../cvode.h"
+
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 struct equations {
     const char *name;
@@ -188,20 +186,12 @@ static struct found compare(struct solving *s, double until, double times)
 {
     struct found found = {0, 0, 0};
     double now = 0, out;
-    SUNContext context;
-    SUNContext_Create(NULL, &context);
-    N_Vector y = N_VNew_Serial(s->of->states, context);
-    for (int i = 0; i < s->of->states; i++)
-        NV_Ith_S(y, i) = s->of->start[i] * times;
-    SUNMatrix J = SUNDenseMatrix(s->of->states, s->of->states, context);
-    SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
-    void *cvode = CVodeCreate(CV_BDF, context);
+    double start[sizeof s->of->start / sizeof *s->of->start];
+    struct cvode c;
     realtype t = 0;
-    bool good = CVodeInit(cvode, slopes, 0, y) == CV_SUCCESS &&
-                CVodeSetUserData(cvode, s) == CV_SUCCESS &&
-                CVodeSStolerances(cvode, 1e-12, 1e-13) == CV_SUCCESS &&
-                CVodeSetLinearSolver(cvode, linear, J) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(cvode, 10000000) == CV_SUCCESS;
+    for (int i = 0; i < s->of->states; i++)
+        start[i] = s->of->start[i] * times;
+    bool good = cvode_open(&c, CV_BDF, s->of->states, start, slopes, s, 1e-12, 1e-13, NULL);
     for (char line[4096]; good && fgets(line, sizeof line, stdin);) {
         if (line[0] == 't')
             now = strtod(line + 1, NULL);
@@ -210,16 +200,17 @@ static struct found compare(struct solving *s, double until, double times)
         out = strtod(line + 1, NULL);
         if (s->of->drive != LOAD) {
             sample(s, found.samples, t, now);
-            good = CVodeReInit(cvode, t, y) == CV_SUCCESS;
+            good = CVodeReInit(c.memory, t, c.y) == CV_SUCCESS;
         }
-        good = good && (s->of->closed || CVode(cvode, now, y, &t, CV_NORMAL) >= 0);
+        good = good && (s->of->closed || CVode(c.memory, now, c.y, &t, CV_NORMAL) >= 0);
         const double exact = s->of->closed ? s->of->closed(now, times)
-                                           : s->of->output(now, N_VGetArrayPointer(y), load_at(s, now));
+                                           : s->of->output(now, N_VGetArrayPointer(c.y), load_at(s, now));
         const double error = fabs(out - exact);
         found.worst = error <= found.worst ? found.worst : error;
         found.largest = fmax(found.largest, fabs(exact));
         found.samples++;
     }
+    cvode_close(&c);
     found.samples = good ? found.samples : 0;
     return found;
 }

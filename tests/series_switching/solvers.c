@@ -16,17 +16,14 @@
 #define SYSTEM_COUNT switched_count
 #define METHOD CV_ADAMS
 #endif
+#include "../cvode.h"
 #include "systems.h"
 #include "tap.h"
 
-#include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 enum { SECONDS = 6 };
 
@@ -59,31 +56,22 @@ static int distances(sunrealtype t, N_Vector y, sunrealtype *g, void *context)
 /* y at the end; how many roots. From one stop to the next */
 static int solve(const struct switched_system *s, double *end)
 {
-    SUNContext context;
+    struct cvode c;
     int roots = 0, most = 0, found[MOST_EXPRESSIONS * MOST_BREAKS];
     double t = 0;
-    SUNContext_Create(NULL, &context);
-    N_Vector y = N_VNew_Serial(s->states, context);
-    SUNMatrix J = SUNDenseMatrix(s->states, s->states, context);
-    SUNLinearSolver linear = SUNLinSol_Dense(y, J, context);
-    void *memory = CVodeCreate(METHOD, context);
     for (int i = 0; i < s->states; i++)
-        NV_Ith_S(y, i) = (double)s->start[i];
+        end[i] = (double)s->start[i];
     for (int i = 0; i < s->expressions; i++)
         most += s->breaks[i];
-    CVodeInit(memory, slopes, 0, y);
-    CVodeSetUserData(memory, (void *)(size_t)s);
-    CVodeSStolerances(memory, 1e-13, 1e-14);
-    CVodeSetLinearSolver(memory, linear, J);
-    CVodeSetMaxNumSteps(memory, 1000000);
-    CVodeRootInit(memory, most, distances);
+    cvode_open(&c, METHOD, s->states, end, slopes, (void *)(size_t)s, 1e-13, 1e-14, NULL);
+    CVodeRootInit(c.memory, most, distances);
     while (t < SECONDS) {
         const double to = s->change > 0 && !after_change ? (double)s->change : SECONDS;
-        CVodeSetStopTime(memory, to);
-        const int flag = CVode(memory, to, y, &t, CV_NORMAL);
+        CVodeSetStopTime(c.memory, to);
+        const int flag = CVode(c.memory, to, c.y, &t, CV_NORMAL);
         if (flag == CV_ROOT_RETURN) {
             int root = 0;
-            CVodeGetRootInfo(memory, found);
+            CVodeGetRootInfo(c.memory, found);
             for (int i = 0; i < s->expressions; i++)
                 for (int k = 0; k < s->breaks[i]; k++, root++) {
                     interval_of[i] += found[root];
@@ -95,15 +83,11 @@ static int solve(const struct switched_system *s, double *end)
         } else if (to < SECONDS) {
             after_change = 1;
         }
-        CVodeReInit(memory, t, y);
+        CVodeReInit(c.memory, t, c.y);
     }
     for (int i = 0; i < s->states; i++)
-        end[i] = NV_Ith_S(y, i);
-    CVodeFree(&memory);
-    SUNLinSolFree(linear);
-    SUNMatDestroy(J);
-    N_VDestroy(y);
-    SUNContext_Free(&context);
+        end[i] = NV_Ith_S(c.y, i);
+    cvode_close(&c);
     return roots;
 }
 

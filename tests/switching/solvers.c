@@ -1,17 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The models against CVODE with its root finding, on equations by hand: the solver stops at each root of the switching
  * functions, and where an input has a corner or a jump, and begins anew. */
+#include "../cvode.h"
 #include "drive.h"
 #include "solvers_variants.h"
 #include "tap.h"
 
-#include <cvode/cvode.h>
 #include <math.h>
-#include <nvector/nvector_serial.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 
 enum { MOST_ROOTS = 4 };
 static const double relative = 1e-13;       /* tolerance of CVODE */
@@ -28,11 +25,7 @@ struct solver {
 	double u0, slope, begun;                /* input: u0 + slope (t - begun) */
 	bool side[MOST_ROOTS];
 	long roots;
-	void *memory;
-	N_Vector y;
-	SUNMatrix J;
-	SUNLinearSolver linear;
-	SUNContext context;
+	struct cvode cvode;
 };
 
 /* ---- by hand ---- */
@@ -168,7 +161,7 @@ static int distances(realtype t, N_Vector y, realtype *g, void *from)
 static void find_sides(struct solver *s, double t)
 {
 	double g[MOST_ROOTS];
-	s->of->distance(t, N_VGetArrayPointer(s->y), input_of(s, t), g);
+	s->of->distance(t, N_VGetArrayPointer(s->cvode.y), input_of(s, t), g);
 	for (int j = 0; j < s->of->roots; j++)
 		s->side[j] = g[j] > 0;
 }
@@ -177,29 +170,15 @@ static struct solver *solver_new(const struct equations *of, const double *y, do
 {
 	struct solver *s = calloc(1, sizeof *s);
 	s->of = of;
-	SUNContext_Create(NULL, &s->context);
-	s->y = N_VNew_Serial(of->n, s->context);
-	memcpy(N_VGetArrayPointer(s->y), y, (size_t)of->n * sizeof *y);
-	s->J = SUNDenseMatrix(of->n, of->n, s->context);
-	s->linear = SUNLinSol_Dense(s->y, s->J, s->context);
-	s->memory = CVodeCreate(CV_ADAMS, s->context);
-	CVodeInit(s->memory, slopes, 0, s->y);
-	CVodeSetUserData(s->memory, s);
-	CVodeSStolerances(s->memory, relative, relative * scale);
-	CVodeSetLinearSolver(s->memory, s->linear, s->J);
-	CVodeSetMaxNumSteps(s->memory, 10000000);
-	CVodeRootInit(s->memory, of->roots, distances);
+	cvode_open(&s->cvode, CV_ADAMS, of->n, y, slopes, s, relative, relative * scale, NULL);
+	CVodeRootInit(s->cvode.memory, of->roots, distances);
 	find_sides(s, 0);
 	return s;
 }
 
 static void solver_free(struct solver *s)
 {
-	CVodeFree(&s->memory);
-	SUNLinSolFree(s->linear);
-	SUNMatDestroy(s->J);
-	N_VDestroy(s->y);
-	SUNContext_Free(&s->context);
+	cvode_close(&s->cvode);
 	free(s);
 }
 
@@ -211,7 +190,7 @@ static void set_input(struct solver *s, double t, double u, double slope)
 	s->begun = step_begun = t;
 	s->u0 = u;
 	s->slope = slope;
-	CVodeReInit(s->memory, t, s->y);
+	CVodeReInit(s->cvode.memory, t, s->cvode.y);
 	find_sides(s, t);
 	for (int j = 0; j < s->of->roots; j++)
 		s->roots += before[j] != s->side[j];
@@ -222,17 +201,17 @@ static bool solve_until(struct solver *s, double to)
 	double t = s->begun;
 	int flag = CV_ROOT_RETURN, found[MOST_ROOTS];
 	while (flag == CV_ROOT_RETURN) {
-		CVodeSetStopTime(s->memory, to);
-		flag = CVode(s->memory, to, s->y, &t, CV_NORMAL);
+		CVodeSetStopTime(s->cvode.memory, to);
+		flag = CVode(s->cvode.memory, to, s->cvode.y, &t, CV_NORMAL);
 		if (flag != CV_ROOT_RETURN)
 			break;
-		CVodeGetRootInfo(s->memory, found);
+		CVodeGetRootInfo(s->cvode.memory, found);
 		for (int j = 0; j < s->of->roots; j++)
 			if (found[j] != 0 && (found[j] > 0) != s->side[j]) {
 				s->side[j] = found[j] > 0;
 				s->roots++;
 			}
-		CVodeReInit(s->memory, t, s->y);
+		CVodeReInit(s->cvode.memory, t, s->cvode.y);
 	}
 	return flag >= 0;
 }
@@ -274,7 +253,7 @@ static void compare(const struct subject *p)
             good = solve_until(s, to);
             run_state(&r, x);
             for (int i = 0; i < m->states; i++) {
-                const double expected = N_VGetArrayPointer(s->y)[i];
+                const double expected = N_VGetArrayPointer(s->cvode.y)[i];
                 most[i] = fmax(most[i], fabs(expected));
                 good = close_to(x[i], expected, p->tolerance * most[i], "%s, h = %g, t = %g, %s", p->name, m->h, to,
                                 m->state_names[i]) &&
