@@ -133,7 +133,7 @@ extern const struct method *const adaptive_methods[];   /* adaptive.c */
 void put_scales(FILE *out, const struct problem *problem, const char *name, const char *file);
 extern const struct method *const clearance_methods[];  /* clearance.c: models with clearances */
 extern const struct method *const propagator_methods[]; /* propagator.c: linear problems */
-extern const struct method residues_naive;              /* residues_naive.c: the same, where poles are apart */
+extern const struct method *const residues_naive;       /* not among them: the same, where poles are apart */
 const struct method *method_find(const char *name);     /* among these */
 /* pade.c: e^{A length}, n x n, row-major; false: A is not finite, and nor is the result */
 bool pade_exponential(int n, const double *A, double length, double *result);

@@ -284,7 +284,7 @@ static void try_peers(FILE *out, const struct hard_case *c, const struct problem
 	for (int k = 0; k < 4; k++)
 		for (const struct method *const *m = lists[k]; *m; m++)
 			try_peer(out, c, p, t, *m);
-	try_peer(out, c, p, t, &residues_naive);
+	try_peer(out, c, p, t, residues_naive);
 }
 
 static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,

@@ -443,6 +443,11 @@ static const struct kind kinds[] = {
 	{BY("exp(A h) rounded, literals, float", ROUNDED " and to float; " AS_CODE), .way = LITERALS,
 	 .exponential = rounded_exponential, .single = true},
 };
+static const struct kind naive = {
+	BY("naive residues", "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double"),
+	.exponential = naive_exponential,
+};
+const struct method *const residues_naive = &naive.method;
 const struct method *const propagator_methods[] = {
 	&kinds[0].method, &kinds[1].method, &kinds[2].method, &kinds[3].method, &kinds[4].method, &kinds[5].method,
 	&kinds[6].method, &kinds[7].method, &kinds[8].method, &kinds[9].method, NULL,

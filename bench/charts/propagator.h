@@ -29,6 +29,7 @@ struct propagator {
 	int rows;                   /* room in row */
 };
 
+void naive_exponential(int size, const double *generator, double length, double *result);  /* residues_naive.c */
 bool modes_find(struct propagator *r);          /* and its table for a step; false: there are none */
 void modes_discard(struct modes *m);
 void modes_restart(struct propagator *r);

@@ -3,213 +3,107 @@
  * polynomial solver, every pole taken for a simple one, A(s)/B'(s) e^{sh} summed into the matrix of a step. For one or
  * two coordinates. It shows what plgen's exact multiplicities and correct rounding are for; nobody need write it like
  * this. */
-#include "charts.h"
+#include "propagator.h"
 
 #include <complex.h>
 #include <gsl/gsl_poly.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 2, DEGREE = 2 * MOST };
+enum { MOST = 4 + MOST_LOADS };
 
-struct naive {
-	struct run run;
-	int n;
-	long taken;
-	double y[2 * MOST];
-	double C[MOST][MOST], K[MOST][MOST];            /* of x'' + C x' + K x = loads */
-	double B[DEGREE + 1];                           /* det(s^2 + C s + K), rising powers */
-	double Phi[2 * MOST][2 * MOST];
-	/* answers to loads 1, cos(w tau), sin(w tau) */
-	double held[2 * MOST][MOST], cosine[2 * MOST][MOST], sine[2 * MOST][MOST];
-};
-
-static double complex at(const double *polynomial, int degree, double complex s)
+/* det(s^2 + C s + K), rising powers */
+static void characteristic(int size, int n, const double *G, double B[5])
 {
-	double complex sum = 0;
-	for (int k = degree; k >= 0; k--)
-		sum = sum * s + polynomial[k];
-	return sum;
-}
-
-static double complex slope_at(const double *polynomial, int degree, double complex s)
-{
-	double complex sum = 0;
-	for (int k = degree; k >= 1; k--)
-		sum = sum * s + k * polynomial[k];
-	return sum;
-}
-
-/* B = P11 P22 - P12 P21, or P11 */
-static void characteristic(struct naive *r)
-{
-	double P[MOST][MOST][3];
-	for (int i = 0; i < r->n; i++)
-		for (int j = 0; j < r->n; j++) {
-			P[i][j][0] = r->K[i][j];
-			P[i][j][1] = r->C[i][j];
-			P[i][j][2] = i == j;
+	double P[2][2][3] = { { { 0 } } };
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < n; j++) {
+			const double *row = G + (n + i) * size, entry[3] = { -row[j], -row[n + j], i == j };
+			memcpy(P[i][j], entry, sizeof entry);
 		}
-	if (r->n == 1) {
-		memcpy(r->B, P[0][0], sizeof P[0][0]);
-		return;
+	for (int i = 0; i <= 2; i++) {
+		B[i] += n == 1 ? P[0][0][i] : 0;
+		for (int j = 0; j <= 2 && n == 2; j++)
+			B[i + j] += P[0][0][i] * P[1][1][j] - P[0][1][i] * P[1][0][j];
 	}
-	for (int i = 0; i <= 2; i++)
-		for (int j = 0; j <= 2; j++)
-			r->B[i + j] += P[0][0][i] * P[1][1][j] - P[0][1][i] * P[1][0][j];
 }
 
-/* adj P(s) */
-static void adjugate(const struct naive *r, double complex s, double complex adj[MOST][MOST])
+/* Its roots, then the poles of the loads that there are */
+static bool find_poles(int size, int own, const double *G, const double *B, double complex *s)
 {
-	if (r->n == 1) {
-		adj[0][0] = 1;
-		return;
-	}
-	for (int i = 0; i < 2; i++)
-		for (int j = 0; j < 2; j++)
-			adj[i][j] = i == j ? s * s + s * r->C[1 - i][1 - i] + r->K[1 - i][1 - i]
-			            : -(s * r->C[i][j] + r->K[i][j]);
-}
-
-/* A pole s of B or of a load: X(s) = adj P(s) / ..., whose residue is `weight` adj P(s); velocities are s times as
- * much. */
-static void add_response(const struct naive *r, double complex s, double complex weight,
-                         double response[2 * MOST][MOST])
-{
-	double complex adj[MOST][MOST];
-	adjugate(r, s, adj);
-	for (int i = 0; i < r->n; i++)
-		for (int j = 0; j < r->n; j++) {
-			response[i][j] += creal(weight * adj[i][j]);
-			response[r->n + i][j] += creal(weight * s * adj[i][j]);
-		}
-}
-
-/* X(s) = adj P(s) ((s + C) x0 + v0) / B(s) */
-static void add_free(struct naive *r, double complex s, double complex weight)
-{
-	double complex adj[MOST][MOST];
-	adjugate(r, s, adj);
-	for (int i = 0; i < r->n; i++)
-		for (int j = 0; j < r->n; j++) {
-			double complex x = s * adj[i][j];
-			for (int k = 0; k < r->n; k++)
-				x += adj[i][k] * r->C[k][j];
-			r->Phi[i][j] += creal(weight * x);
-			r->Phi[r->n + i][j] += creal(weight * s * x);
-			r->Phi[i][r->n + j] += creal(weight * adj[i][j]);
-			r->Phi[r->n + i][r->n + j] += creal(weight * s * adj[i][j]);
-		}
-}
-
-static bool sum_residues(struct naive *r, double h, double w)
-{
-	const int degree = 2 * r->n;
-	double root[2 * DEGREE];
-	gsl_poly_complex_workspace *work = gsl_poly_complex_workspace_alloc((size_t)degree + 1);
-	const int status = gsl_poly_complex_solve(r->B, (size_t)degree + 1, work, root);
+	double root[8];
+	gsl_poly_complex_workspace *work = gsl_poly_complex_workspace_alloc((size_t)own + 1);
+	const int status = gsl_poly_complex_solve(B, (size_t)own + 1, work, root);
 	gsl_poly_complex_workspace_free(work);
-	if (status != 0)
-		return false;
-	for (int k = 0; k < degree; k++) {
-		const double complex s = CMPLX(root[2 * k], root[2 * k + 1]),
-			weight = cexp(s * h) / slope_at(r->B, degree, s);
-		add_free(r, s, weight);
-		add_response(r, s, weight / s, r->held);
-		add_response(r, s, weight * s / (s * s + w * w), r->cosine);
-		add_response(r, s, weight * w / (s * s + w * w), r->sine);
+	for (int k = 0; k < own; k++)
+		s[k] = CMPLX(root[2 * k], root[2 * k + 1]);
+	if ((size - own) % 2 == 1)
+		s[own] = 0;
+	if (size - own >= 2) {
+		s[size - 2] = CMPLX(0, G[(size - 1) * size + size - 2]);
+		s[size - 1] = conj(s[size - 2]);
 	}
-	add_response(r, 0, 1 / r->B[0], r->held);
-	for (int sign = 1; sign >= -1; sign -= 2) {
-		const double complex s = CMPLX(0, sign * w), weight = cexp(s * h) / at(r->B, degree, s);
-		add_response(r, s, weight / 2, r->cosine);
-		add_response(r, s, weight * CMPLX(0, -sign) / 2, r->sine);
+	return status == 0;
+}
+
+/* B'(s_k), B with the poles of loads up to `poles` */
+static double complex slope_at(int k, int own, int poles, const double *B, const double complex *s)
+{
+	double complex value = 0, slope = 0;
+	for (int i = own; i >= 0; i--) {
+		slope = slope * s[k] + value;
+		value = value * s[k] + B[i];
 	}
-	return true;
+	if (k < own && poles - own >= 2)
+		slope *= s[k] * s[k] + cimag(s[poles - 2]) * cimag(s[poles - 2]);
+	if (k < own)
+		return (poles - own) % 2 == 1 ? slope * s[k] : slope;
+	for (int j = own; j < poles; j++)
+		value *= j == k ? 1 : s[k] - s[j];
+	return value;
 }
 
-/* A load that is not there must not bring in its poles, which may coincide with others and give what is not a
- * number. */
-static bool acts(const struct problem *p, const double *b)
+/* Columns from `from` on, of the leading `poles`, by that many simple poles s_k: A(s_k) is the product of G - s_j over
+ * the others */
+static void add_residues(int size, int own, int from, int poles, const double *G, const double *B,
+                         const double complex *s, double h, double *result)
 {
-	for (int i = p->n; i < 2 * p->n; i++)
-		if (b[i] != 0)
-			return true;
-	return false;
-}
-
-static void restart(struct run *run)
-{
-	struct naive *r = (struct naive *)run;
-	memcpy(r->y, run->problem->start, 2 * (size_t)r->n * sizeof *r->y);
-	r->taken = 0;
-}
-
-static void step(struct naive *r)
-{
-	const struct problem *p = r->run.problem;
-	const double phase = p->w * (double)r->taken * r->run.setting, c = cos(phase), s = sin(phase);
-	double next[2 * MOST] = { 0 };
-	for (int i = 0; i < 2 * r->n; i++) {
-		for (int j = 0; j < 2 * r->n; j++)
-			next[i] += r->Phi[i][j] * r->y[j];
-		for (int j = 0, k = r->n; j < r->n; j++, k++) {
-			if (acts(p, p->b0))
-				next[i] += r->held[i][j] * p->b0[k];
-			if (p->w > 0)
-				next[i] += r->cosine[i][j] * (p->b1[k] * c + p->b2[k] * s) +
-				           r->sine[i][j] * (p->b2[k] * c - p->b1[k] * s);
+	double complex A[MOST][MOST], next[MOST][MOST];
+	for (int k = 0; k < poles; k++) {
+		for (int i = 0; i < poles; i++)
+			for (int j = from; j < poles; j++)
+				A[i][j] = i == j ? cexp(s[k] * h) / slope_at(k, own, poles, B, s) : 0;
+		for (int other = 0; other < poles; other++) {
+			for (int i = 0; i < poles && other != k; i++)
+				for (int j = from; j < poles; j++) {
+					next[i][j] = -s[other] * A[i][j];
+					for (int m = 0; m < poles; m++)
+						next[i][j] += G[i * size + m] * A[m][j];
+				}
+			memcpy(A, other == k ? A : next, sizeof A);
 		}
+		for (int i = 0; i < own; i++)
+			for (int j = from; j < poles; j++)
+				result[i * size + j] += creal(A[i][j]);
 	}
-	memcpy(r->y, next, sizeof next);
-	r->taken++;
 }
 
-static bool advance(struct run *run, int units, double *rows)
+/* What acts on the loads are they alone: they go on as one would write them */
+void naive_exponential(int size, const double *G, double h, double *result)
 {
-	struct naive *r = (struct naive *)run;
-	const int steps = (int)lround(run->problem->unit / run->setting);
-	for (int k = 0; k < units; k++) {
-		for (int i = 0; i < steps; i++)
-			step(r);
-		if (rows)
-			run_get(run, rows + 2 * k * r->n);
-	}
-	return true;
+	const int own = G[1] == 1 ? 2 : 4;              /* q1' = v1, which stands behind the coordinates */
+	double B[5] = { 0 };
+	double complex s[MOST];
+	characteristic(size, own / 2, G, B);
+	const bool good = size <= MOST && find_poles(size, own, G, B, s);
+	for (int i = 0; i < size * size; i++)
+		result[i] = good ? 0 : NAN;
+	if (!good)
+		return;
+	add_residues(size, own, 0, own, G, B, s, h, result);
+	add_residues(size, own, own, size, G, B, s, h, result);
+	for (int i = own; i < size; i++)
+		for (int j = own; j < size; j++)
+			result[i * size + j] = i == j ? creal(cexp(s[i] * h)) : G[i * size + j] == 0 ? 0
+				: copysign(fabs(cimag(cexp(s[i] * h))), G[i * size + j]);
 }
-
-static void close_run(struct run *run)
-{
-	free(run);
-}
-
-static struct run *open_run(const struct method *method, const struct problem *p, double h)
-{
-	struct naive *r = p->linear && p->n <= MOST ? calloc(1, sizeof *r) : NULL;
-	if (!r)
-		return NULL;
-	r->n = p->n;
-	for (int i = 0; i < p->n; i++)
-		for (int j = 0; j < p->n; j++) {
-			r->K[i][j] = -p->A[(p->n + i) * 2 * p->n + j];
-			r->C[i][j] = -p->A[(p->n + i) * 2 * p->n + p->n + j];
-		}
-	r->run = (struct run){ .method = method, .problem = p, .setting = h, .restart = restart, .advance = advance,
-	                       .get = run_get, .evaluations = run_evaluations, .close = close_run, .now = r->y,
-	                       .asked = -1 };
-	characteristic(r);
-	if (!sum_residues(r, h, p->w)) {
-		free(r);
-		return NULL;
-	}
-	restart(&r->run);
-	return &r->run;
-}
-
-const struct method residues_naive = {
-	.name = "naive residues", .family = PROPAGATOR, .linear_only = true,
-	.settings = "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double",
-	.open = open_run,
-};
