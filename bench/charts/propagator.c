@@ -444,7 +444,8 @@ static const struct kind kinds[] = {
 	 .exponential = rounded_exponential, .single = true},
 };
 static const struct kind naive = {
-	BY("naive residues", "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double"),
+	BY("naive residues",
+	   "gsl_poly_complex_solve; every pole taken for a simple one; a matrix of the step in double"),
 	.exponential = naive_exponential,
 };
 const struct method *const residues_naive = &naive.method;
