@@ -18,6 +18,10 @@
  *     PL(lanes_out)(y, factor, now, out)      and their outputs
  *     PL_FLUSHES, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED, PL_FLUSHES_LANES 1   of flush.h, where a step flushes
  *
+ *     PL_EVENTS                      1: PL(lanes_step) leaves lanes that may have an event in the step as they are, and
+ *                                    says which it has stepped; behind the states y has the region
+ *     PL_OUT_ALONE                   1: of these, outputs are those of NAME_out
+ *
  * and where there are outputs that are the largest of something (peaks.h)
  *
  *     PL_PEAKS, PL(peak_output)[]             how many, and which
@@ -56,101 +60,14 @@ typedef struct PL(ahead) {
     real reach[PL_PEAKS];                                      /* that at most */
     int known; /* is `acting` filled in?  From these, the samples of the steps: */
     PL_TYPE from;
-    const real *u;
 #endif
+#if PL_EVENTS
+    unsigned char head[PL_AHEAD + 1][offsetof(PL_TYPE, crossing)]; /* of an instance, what all share */
+#endif
+    const real *u;
 } PL(ahead);
 
-/* ---- an instance alone ---- */
-
-#if PL_FACTORS > 0
-static void PL(batch_factors)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
-{
-    size_t i;
-    for (i = 0; i < PL_FACTORS && b->factors; i++) {
-        memcpy((char *)one + PL(factor_at)[i], &b->factors[i * b->count + j], sizeof(real));
-    }
-}
-#endif
-
-/* Its coefficients are those of all: nothing that is asked of it behind this reads them. */
-static void PL(batch_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
-{
-    real row[PL_ROWS];
-    size_t i;
-    for (i = 0; i < PL_ROWS; i++) {
-        row[i] = b->y[i * b->count + j];
-    }
-    *one = b->shared;
-    memcpy(one, row, sizeof row);
-}
-
-/* As instance j; its peaks are what its outputs are now. */
-static void PL(batch_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
-{
-    PL_TYPE one = *s;
-    real row[PL_ROWS], out[PL_OUTPUTS];
-    size_t i;
-    memcpy(row, s, sizeof row);
-    for (i = 0; i < PL_ROWS; i++) {
-        b->y[i * b->count + j] = row[i];
-    }
-#if PL_FACTORS > 0
-    PL(batch_factors)(b, j, &one);
-#endif
-    PL(out)(&one, out);
-    for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
-        b->peak[i * b->count + j] = pl_magnitude(out[i]);
-    }
-}
-
-#if PL_FACTORS > 0
-int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
-{
-    PL_TYPE one = b->shared;
-    size_t i;
-    if (!b->factors || !(c->h == b->shared.coeffs.h)) {
-        return PL_NO_STEP;
-    }
-    one.coeffs = *c;
-    for (i = 0; i < PL_FACTORS; i++) {
-        memcpy(&b->factors[i * b->count + j], (const char *)&one + PL(factor_at)[i], sizeof(real));
-    }
-    return 0;
-}
-#endif
-
-void PL(batch_init)(PL_INSTANCES *b)
-{
-    size_t j;
-    PL(init)(&b->shared);
-    for (j = 0; j < b->count; j++) {
-#if PL_FACTORS > 0
-        (void)PL(batch_use)(b, j, &b->shared.coeffs);
-#endif
-        PL(batch_write)(b, j, &b->shared);
-    }
-}
-
-void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
-{
-    PL_TYPE one = b->shared;
-    PL(set)(&one, PL(time)(&b->shared), y);
-    PL(batch_write)(b, j, &one);
-}
-
-void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
-{
-    PL_TYPE one;
-    PL(batch_read)(b, j, &one);
-    PL(get)(&one, y);
-}
-
-int PL(batch_status)(const PL_INSTANCES *b, size_t j)
-{
-    PL_TYPE one;
-    PL(batch_read)(b, j, &one);
-    return PL(status)(&one);
-}
+#include "lanes_alone.h"
 
 /* ---- lanes from the arrays and back ---- */
 
@@ -292,13 +209,6 @@ PL_LANES_INLINE int PL(lanes_may_pass)(const pl_lanes *state, const pl_lanes *fa
     return any;
 }
 
-static real PL(lane)(const pl_lanes *all, size_t l)
-{
-    real one;
-    memcpy(&one, (const char *)all + l * sizeof one, sizeof one);
-    return one;
-}
-
 /* Instance j by itself, from states x on: larger values inside the step that ends at outputs `end` */
 static void PL(look_alone)(const PL_INSTANCES *b, size_t j, real *x, const real *acting, const real *end, real *peak)
 {
@@ -379,6 +289,7 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
+#if !PL_EVENTS
 /* Step k of these */
 PL_LANES_INLINE void PL(lanes_go_on)(const PL(ahead) *ahead, size_t k, pl_lanes *y, const pl_lanes *factor)
 {
@@ -389,6 +300,7 @@ PL_LANES_INLINE void PL(lanes_go_on)(const PL(ahead) *ahead, size_t k, pl_lanes 
     }
 #endif
 }
+#endif
 
 PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
 {
@@ -423,14 +335,22 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
 #if PL_PEAKS > 0
             memcpy(start[g], y[g], sizeof start[g]);
 #endif
+#if PL_EVENTS
+            PL(lanes_step_all)(b, first + (size_t)g * PL_AT_ONCE, ahead, k, y[g], factor[g]);
+#else
             PL(lanes_go_on)(ahead, k, y[g], factor[g]);
+#endif
         }
         if (b->peak || out) {
             PL_LANES_UNROLL
             for (g = 0; g < groups; g++) {
                 const size_t j = first + (size_t)g * PL_AT_ONCE;
                 pl_lanes value[PL_OUTPUTS];
+#if PL_OUT_ALONE
+                PL(out_alone)(b, j, ahead, k, y[g], value);
+#else
                 PL(lanes_out)(y[g], factor[g], ahead->now[k], value);
+#endif
 #if PL_PEAKS > 0
                 PL(lanes_between)(b, j, start[g], factor[g], ahead->acting[k], before[g], value, peak[g]);
 #else
@@ -563,13 +483,16 @@ static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
     int p;
     ahead->known = !PL_SAMPLED;
     ahead->from = *s;
-    ahead->u = u;
     for (p = 0; p < PL_PEAKS; p++) {
         ahead->reach[p] = 0;
     }
 #endif
 #if PL_SAMPLED
     PL(share_reach)(s, u, ahead->steps, ahead->reach);
+#endif
+    ahead->u = u;
+#if PL_EVENTS
+    memcpy(ahead->head[0], s, sizeof ahead->head[0]);
 #endif
     PL(share_out)(s, ahead->now[0]);
     for (k = 1; k <= ahead->steps; k++) {
@@ -581,6 +504,9 @@ static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
 #endif
         PL(share_step)(s, u, ahead->now[k]);
         PL(share_out)(s, ahead->now[k]);
+#if PL_EVENTS
+        memcpy(ahead->head[k], s, sizeof ahead->head[k]);
+#endif
 #if PL_INPUTS > 0
         u += PL_INPUTS;
 #endif
@@ -634,7 +560,7 @@ static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
         status = PL(batch_use)(b, j, &c);
     }
     if (status == 0) {
-        PL(batch_read)(b, j, &one);
+        PL(batch_take)(b, j, &one);
         PL(use)(&one, &c);
         PL(out)(&one, out);
         PL(use)(&b->shared, &c);

@@ -370,6 +370,7 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
 #define PL(name) unmet_##name
 #define PL_SIZE m->size
 #define PL_CAPPED 0
+#define PL_FEW_REGIONS 0
 #define PL_SUM(row, x) sum_of(m->size, row, x)
 #define PL_EACH
 #include "unmet.h"

@@ -41,11 +41,13 @@
 #define PL_LANES_OF_FLOATS
 #define PL_LANES_BITS int32_t
 #define PL_LANES_MAGNITUDE INT32_MAX
+#define PL_LANES_MASK __mmask16
 #define PL_LANES_CALL(front, back) front##ps##back
 #else
 #define PL_LANES_OF_DOUBLES
 #define PL_LANES_BITS int64_t
 #define PL_LANES_MAGNITUDE INT64_MAX
+#define PL_LANES_MASK __mmask8
 #define PL_LANES_CALL(front, back) front##pd##back
 #endif
 
@@ -65,35 +67,6 @@ PL_LANES_INLINE pl_lanes pl_lanes_size(pl_lanes value)
     return value < 0 ? -value : value;
 }
 #endif
-
-/* The larger of `peak` and |value|, lane by lane; not a number where value is none */
-PL_LANES_INLINE pl_lanes pl_lanes_peak(pl_lanes peak, pl_lanes value)
-{
-    const pl_lanes size = pl_lanes_size(value);
-#if defined(__GNUC__) && defined(__AVX512F__)
-    return PL_LANES_CALL(_mm512_max_, )(peak, size);
-#elif defined(__GNUC__) && defined(__AVX__)
-    return PL_LANES_CALL(_mm256_max_, )(peak, size);
-#elif defined(__GNUC__) && defined(__SSE2__)
-    return PL_LANES_CALL(_mm_max_, )(peak, size);
-#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
-    const pl_lanes_bits above = (pl_lanes_bits)(peak > size);
-    return (pl_lanes)(((pl_lanes_bits)peak & above) | ((pl_lanes_bits)size & ~above));
-#else
-    return peak > size ? peak : size;
-#endif
-}
-
-/* `value`, and 0 where |of| < least < 1, lane by lane */
-PL_LANES_INLINE pl_lanes pl_lanes_kept(pl_lanes of, pl_lanes value, pl_lanes least)
-{
-    const pl_lanes size = pl_lanes_size(of);
-#if defined(__GNUC__) && (defined(__SSE2__) || (defined(__ARM_NEON) && defined(__aarch64__)))
-    return (pl_lanes)((pl_lanes_bits)value & ~((pl_lanes_bits)(size < least) & (pl_lanes_bits)(least < 1)));
-#else
-    return size < least && least < 1 ? 0 : value;
-#endif
-}
 
 /* Is a above b in some lane, or one of them not a number? */
 PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
@@ -115,6 +88,140 @@ PL_LANES_INLINE int pl_lanes_above(pl_lanes a, pl_lanes b)
     }
     return above;
 #endif
+}
+
+/* What is so in some lanes: of each lane a bit, all its bits, or of a single one whether it is not 0 */
+#if defined(__GNUC__) && defined(__AVX512F__)
+typedef unsigned pl_lanes_truth;
+#elif defined(__GNUC__) && defined(__SSE2__)
+typedef pl_lanes pl_lanes_truth;
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+typedef pl_lanes_bits pl_lanes_truth;
+#else
+typedef int pl_lanes_truth;
+#endif
+PL_LANES_INLINE pl_lanes_truth pl_lanes_below(pl_lanes a, pl_lanes b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return (pl_lanes_truth)PL_LANES_CALL(_mm512_cmp_, _mask)(a, b, _CMP_LT_OQ);
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_cmp_, )(a, b, _CMP_LT_OQ);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_cmplt_, )(a, b);
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+    return (pl_lanes_bits)(a < b);
+#else
+    return a < b;
+#endif
+}
+PL_LANES_INLINE pl_lanes_truth pl_lanes_equal(pl_lanes a, pl_lanes b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return (pl_lanes_truth)PL_LANES_CALL(_mm512_cmp_, _mask)(a, b, _CMP_EQ_OQ);
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_cmp_, )(a, b, _CMP_EQ_OQ);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_cmpeq_, )(a, b);
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+    return (pl_lanes_bits)(a == b);
+#else
+    return a <= b && a >= b;
+#endif
+}
+/* Both of two, either; a where it is so, b elsewhere */
+PL_LANES_INLINE pl_lanes_truth pl_lanes_both(pl_lanes_truth a, pl_lanes_truth b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return a & b;
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_and_, )(a, b);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_and_, )(a, b);
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+    return a & b;
+#else
+    return a & b;
+#endif
+}
+PL_LANES_INLINE pl_lanes_truth pl_lanes_either(pl_lanes_truth a, pl_lanes_truth b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return a | b;
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_or_, )(a, b);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_or_, )(a, b);
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+    return a | b;
+#else
+    return a | b;
+#endif
+}
+PL_LANES_INLINE pl_lanes pl_lanes_choose(pl_lanes_truth which, pl_lanes a, pl_lanes b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return PL_LANES_CALL(_mm512_mask_blend_, )((PL_LANES_MASK)which, b, a);
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_blendv_, )(b, a, which);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_or_, )(PL_LANES_CALL(_mm_and_, )(which, a), PL_LANES_CALL(_mm_andnot_, )(which, b));
+#elif defined(__GNUC__) && defined(__ARM_NEON) && defined(__aarch64__)
+    return (pl_lanes)(((pl_lanes_bits)a & which) | ((pl_lanes_bits)b & ~which));
+#else
+    return which ? a : b;
+#endif
+}
+/* Of each lane a bit, the first in the lowest */
+PL_LANES_INLINE unsigned pl_lanes_flags(pl_lanes_truth a)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return a;
+#elif defined(__GNUC__) && defined(__AVX__)
+    return (unsigned)PL_LANES_CALL(_mm256_movemask_, )(a);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return (unsigned)PL_LANES_CALL(_mm_movemask_, )(a);
+#else
+    PL_LANES_BITS bit[sizeof(pl_lanes) / sizeof(real)] = {0};
+    unsigned flags = 0;
+    size_t i;
+    memcpy(bit, &a, sizeof a);
+    for (i = 0; i < sizeof(pl_lanes) / sizeof(real); i++) {
+        flags |= (bit[i] != 0 ? 1u : 0u) << i;
+    }
+    return flags;
+#endif
+}
+
+/* The larger, the smaller of two: b where they are equal or one is not a number */
+PL_LANES_INLINE pl_lanes pl_lanes_larger(pl_lanes a, pl_lanes b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return PL_LANES_CALL(_mm512_max_, )(a, b);
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_max_, )(a, b);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_max_, )(a, b);
+#else
+    return pl_lanes_choose(pl_lanes_below(b, a), a, b);
+#endif
+}
+PL_LANES_INLINE pl_lanes pl_lanes_smaller(pl_lanes a, pl_lanes b)
+{
+#if defined(__GNUC__) && defined(__AVX512F__)
+    return PL_LANES_CALL(_mm512_min_, )(a, b);
+#elif defined(__GNUC__) && defined(__AVX__)
+    return PL_LANES_CALL(_mm256_min_, )(a, b);
+#elif defined(__GNUC__) && defined(__SSE2__)
+    return PL_LANES_CALL(_mm_min_, )(a, b);
+#else
+    return pl_lanes_choose(pl_lanes_below(a, b), a, b);
+#endif
+}
+
+/* The larger of `peak` and |value|, lane by lane; not a number where value is none */
+PL_LANES_INLINE pl_lanes pl_lanes_peak(pl_lanes peak, pl_lanes value)
+{
+    return pl_lanes_larger(peak, pl_lanes_size(value));
 }
 
 /* The first `count` numbers, as many as there are lanes at most; 0 in the other lanes */
@@ -147,6 +254,13 @@ PL_LANES_INLINE pl_lanes pl_lanes_all(real value)
     return zero + value;
 }
 
+/* `value`, and 0 where |of| < least < 1, lane by lane */
+PL_LANES_INLINE pl_lanes pl_lanes_kept(pl_lanes of, pl_lanes value, pl_lanes least)
+{
+    const pl_lanes_truth tiny = pl_lanes_below(pl_lanes_size(of), least);
+    return pl_lanes_choose(pl_lanes_both(tiny, pl_lanes_below(least, pl_lanes_all(1))), pl_lanes_all(0), value);
+}
+
 /* The larger of `most` and |value|; not a number where value is none */
 PL_LANES_INLINE real pl_larger_size(real most, real value)
 {
@@ -164,6 +278,7 @@ PL_LANES_INLINE pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lan
 }
 #undef PL_LANES_BITS
 #undef PL_LANES_CALL
+#undef PL_LANES_MASK
 #undef PL_LANES_MAGNITUDE
 #endif
 

@@ -44,6 +44,9 @@
 #ifndef PL_FLUSHES_LANES
 #define PL_FLUSHES_LANES 0
 #endif
+#ifndef PL_EVENTS
+#define PL_EVENTS 0
+#endif
 #ifndef PL_EVENT_FREE
 #define PL_EVENT_FREE 0
 #endif
@@ -142,6 +145,9 @@
 #endif
 #ifndef PL_NORMAL
 #define PL_NORMAL 0
+#endif
+#ifndef PL_OUT_ALONE
+#define PL_OUT_ALONE 0
 #endif
 #ifndef PL_OUT_SIZE
 #define PL_OUT_SIZE 0

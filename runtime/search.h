@@ -253,24 +253,8 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 /* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
 #define PL_FEW_REGIONS (PL_REGIONS <= 16 && PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
 
+#if !PL_FEW_REGIONS
 /* row . x in the order of the runtime's sums: of each fourth term, then these */
-#if PL_FEW_REGIONS
-static PL_INLINE double PL(product)(int j, const double *row, const double *x)
-{
-    return j < PL_SIZE && (row[j] < 0.0 || row[j] > 0.0) ? row[j] * x[j] : -0.0;
-}
-
-static PL_INLINE double PL(fourth)(int j, const double *row, const double *x)
-{
-    return ((PL(product)(j, row, x) + PL(product)(j + 4, row, x)) + PL(product)(j + 8, row, x)) +
-           PL(product)(j + 12, row, x);
-}
-
-static PL_INLINE double PL(sum)(const double *row, const double *x)
-{
-    return (PL(fourth)(0, row, x) + PL(fourth)(2, row, x)) + (PL(fourth)(1, row, x) + PL(fourth)(3, row, x));
-}
-#else
 static PL_INLINE double PL(sum)(const double *row, const double *x)
 {
     double s[4] = {-0.0, -0.0, -0.0, -0.0};
@@ -281,12 +265,7 @@ static PL_INLINE double PL(sum)(const double *row, const double *x)
     }
     return (s[0] + s[2]) + (s[1] + s[3]);
 }
-#endif
-
 #define PL_SUM(row, x) PL(sum)(row, x)
-#if PL_FEW_REGIONS
-#define PL_EACH PL_UNROLL
-#else
 #define PL_EACH
 #endif
 #include "unmet.h"

@@ -8,6 +8,7 @@
 #undef PL_AHEAD
 #undef PL_READY
 #undef PL_ALL
+#undef PL_ALL_OF
 #undef PL_ALONE
 #undef PL_REFRESHED
 #undef PL_ANY_STEP
@@ -29,6 +30,7 @@
 #undef PL_BARE
 #undef PL_BASE
 #undef PL_BEATS
+#undef PL_BELOW
 #undef PL_BEND
 #undef PL_BLOCKS
 #undef PL_BOUNCES
@@ -50,9 +52,11 @@
 #undef PL_CHOICE
 #undef PL_CHOICES
 #undef PL_EVENT_FREE
+#undef PL_EVENTS
 #undef PL_COLUMNS
 #undef PL_CONSTRAINTS
 #undef PL_CONTACTS
+#undef PL_CONTACT_ROWS
 #undef PL_CONVERTED
 #undef PL_COORDS
 #undef PL_CORE
@@ -66,6 +70,7 @@
 #undef PL_DERIVATIVES
 #undef PL_DIRECT
 #undef PL_OUT_SIZE
+#undef PL_OUT_ALONE
 #undef PL_SCALED
 #undef PL_SEEDED
 #undef PL_BY_PHI
@@ -91,6 +96,8 @@
 #undef PL_FACTORS
 #undef PL_FASTEST
 #undef PL_FEW
+#undef PL_FAILS
+#undef PL_AND
 #undef PL_FEW_REGIONS
 #undef PL_FIRST
 #undef PL_FIRST_SWEEPS
@@ -126,6 +133,7 @@
 #undef PL_HALVINGS
 #undef PL_HAS
 #undef PL_FAILS
+#undef PL_AND
 #undef PL_HERE
 #undef PL_HIDDEN
 #undef PL_HUGE
@@ -134,6 +142,7 @@
 #undef PL_INPUTS
 #undef PL_IN_MODES
 #undef PL_INSIDE
+#undef PL_IS_ZERO
 #undef PL_INSTANCES
 #undef PL_INTERVAL
 #undef PL_IN_PARTS
@@ -148,6 +157,7 @@
 #undef PL_LANES
 #undef PL_LARGE
 #undef PL_LARGEST
+#undef PL_LARGER
 #undef PL_LEADS
 #undef PL_TANGENT
 #undef PL_LEAST_PART
@@ -160,6 +170,7 @@
 #undef PL_LOST
 #undef PL_MATRICES
 #undef PL_MASSES
+#undef PL_MAGNITUDE
 #undef PL_MAX_EVENTS
 #undef PL_MAX_SPLITS
 #undef PL_MEASURED
@@ -248,6 +259,7 @@
 #undef PL_STATES
 #undef PL_STATE_ROUNDED
 #undef PL_STATUS
+#undef PL_STRANGE
 #undef PL_STAYS
 #undef PL_STEPPED
 #undef PL_STILL
@@ -268,14 +280,17 @@
 #undef PL_TRACE
 #undef PL_TRACE_READS
 #undef PL_TRIES
+#undef PL_TRUTH
 #undef PL_TURNS
 #undef PL_TWICE
 #undef PL_TYPE
 #undef PL_UNIT
+#undef PL_UNMET
 #undef PL_UNKNOWNS
 #undef PL_UNRESOLVED
 #undef PL_UNTIL
 #undef PL_VALUES
+#undef PL_VALUE
 #undef PL_VECTOR
 #undef PL_WATCHED
 #undef PL_WATCH_READS

@@ -31,6 +31,8 @@ struct facts facts_of_step(const struct step *step)
 	facts.sought = peaks_by_values(step);
 	facts.loops = step->program && step->program->loops;
 	facts.modal = step->modal != NULL;
+	facts.checked = step->regions.event_check.by_region && !step->model->params.retuned && !step->is.two_words &&
+			!step->carried.count && !step->model->relative;
 	return facts;
 }
 

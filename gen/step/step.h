@@ -46,6 +46,7 @@ struct absent {                     /* why it is not there, where a reader would
 };
 struct event_check {                /* of regions: whether a step is first checked for events over the whole of h, */
 	bool is_made, fast_path;    /* and for few crossings, by Taylor polynomials of this degree */
+	bool by_region;             /* by numbers of each region, not by tables of all */
 	int degree;
 	const char *searches;       /* why a step is not checked, and goes by the search */
 };

@@ -2,6 +2,7 @@
 /* NAME_batch: what the header has of it, and what batch.h is given. */
 #include "inner.h"
 #include "emit/declarations.h"
+#include "emit/regions/regions.h"
 #include "emit/state.h"
 #include "emit/steps.h"
 #include "step/linear/forms.h"
@@ -44,6 +45,16 @@ static int rows_of(const struct emitter *e)
 	return rows;
 }
 
+/* Behind the states of a model of regions: the region, and contact and status as bytes */
+static const char *row_count(const struct emitter *e)
+{
+	if (has_regions(e))
+		return spell(e, "$N_STATES + 1 +\n"
+				"       (int)((sizeof(pl_contact) + sizeof(int) + sizeof(double) - 1) / "
+				"sizeof(double))");
+	return format("%d", rows_of(e));
+}
+
 static const char *row_list(const struct emitter *e)
 {
 	struct member member[6];
@@ -51,6 +62,8 @@ static const char *row_list(const struct emitter *e)
 	const char *list = "";
 	for (int i = 0; i < count; i++)
 		list = format("%s%s%s", list, i ? ", " : "", member[i].name);
+	if (has_regions(e))
+		return format("%s, its region, and the bytes of contact and status", list);
 	return list;
 }
 
@@ -71,7 +84,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	    alone ? format("\n * Each takes its steps by itself: %s.", alone) : "");
 	say(e, "enum { $N_BATCH_ROWS = %s%s };\n",
 	    alone ? spell(e, "(int)((sizeof(struct $n) + sizeof(double) - 1) / sizeof(double))")
-		  : format("%d", rows_of(e)),
+		  : row_count(e),
 	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
 	say(e, "typedef struct $n_instances {\n"
 	       "    size_t count;\n"
@@ -103,7 +116,7 @@ void emit_batch_declarations(const struct emitter *e)
 	if (b.factors)
 		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
-	if (e->step->no.lanes)
+	if (e->step->no.lanes || has_regions(e))
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
@@ -123,7 +136,7 @@ static bool *loads_of_outputs(const struct batch *b)
 	return wanted;
 }
 
-static void emit_shared(const struct batch *b)
+static void emit_shared_of_linear(const struct batch *b)
 {
 	const struct emitter *e = b->e;
 	open_function(e, "now receives what all instances share in this step; time then advances by h",
@@ -133,9 +146,18 @@ static void emit_shared(const struct batch *b)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	emit_step_end(e);
 	close_function(e, "u now");
+}
+
+static void emit_shared(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (has_regions(e))
+		emit_shared_of_regions(e);
+	else
+		emit_shared_of_linear(b);
 	open_function(e, "now receives what all instances share in the outputs after a step",
 		      "static void $n_share_out(const $n *s, double *now)");
-	emit_load_states(e, loads_of_outputs(b), false);
+	(has_regions(e) ? emit_rotated_loads : emit_load_states)(e, loads_of_outputs(b), false);
 	for (int i = b->after; i < (b->forced >= 0 ? b->forced : b->shared); i++)
 		say(e, "    now[%d] = %s;\n", i, b->shared_text[i]);
 	if (b->forced >= 0)
@@ -204,7 +226,8 @@ static void emit_include(const struct batch *b)
 	const struct emitter *e = b->e;
 	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
-		   { "ROWS", rows_of(e) }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
+		   { "ROWS", has_regions(e) ? 0 : rows_of(e) }, { "EVENTS", has_regions(e) },
+		   { "OUT_ALONE", b->out_alone }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
 		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps },
@@ -236,8 +259,12 @@ void emit_batch(const struct emitter *e)
 	open_algorithm(e, "lanes.h", &(struct size){ NULL, 0 });
 	say(e, "#include \"lanes.h\"\n");
 	emit_shared(&b);
-	emit_lanes_step(&b);
-	emit_lanes_out(&b);
+	if (has_regions(e))
+		emit_lanes_of_regions(e);
+	else
+		emit_lanes_step(&b);
+	if (!b.out_alone)
+		emit_lanes_out(&b);
 	emit_factor_places(&b);
 	if (has_peaks(e))
 		emit_peaks_of_batch(&b);

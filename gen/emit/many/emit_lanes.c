@@ -11,6 +11,11 @@
 
 enum { MOST_GROUPS = 4 };
 
+bool has_regions(const struct emitter *e)
+{
+	return e->step->is.events == EVENTS_OF_REGIONS;
+}
+
 /* ---- what instances share, and what each has ---- */
 
 static int find_text(int count, const char *const *text, int from, const char *wanted)
@@ -79,18 +84,35 @@ static bool only_samples_act(const struct emitter *e)
 	return e->system->states + columns == e->step->layout.size;
 }
 
-struct batch plan_batch(const struct emitter *e)
+/* Outputs as rows over states and what all share; NULL: with regions some are more than that */
+static struct tape *outputs_as_rows(const struct emitter *e)
 {
-	struct batch b = { .e = e, .forced = -1, .step = tape_new(), .out = tape_new() };
-	struct step now = *e->step;             /* what instances share are load states of now, not a refresh's */
-	now.refresh = NULL;
-	tape_of_step(b.step, &now, NULL, "y", NULL);
+	struct tape *t = tape_new();
 	for (int i = 0; i < e->model->outputs; i++) {
 		const struct output *output = &e->model->output[i];
-		tape_set(b.out, format("out[%d]", i), tape_of_row(b.out, e->step, output), 13, output->name);
+		if (output->left)
+			return NULL;
+		tape_set(t, format("out[%d]", i), tape_of_row(t, e->step, output), 13, output->name);
 	}
-	share_operands(&b, b.step, 0);
+	return has_regions(e) && tape_reads(t, TAPE_TABLE, -1, -1) ? NULL : t;
+}
+
+struct batch plan_batch(const struct emitter *e)
+{
+	struct batch b = { .e = e, .forced = -1, .step = tape_new(),
+			   .out = outputs_as_rows(e) };
+	struct step now = *e->step;             /* what instances share are load states of now, not a refresh's */
+	now.refresh = NULL;
+	if (has_regions(e)) {
+		b.shared = e->step->layout.size - e->system->states;
+		b.shared_text = ARRAY(const char *, (size_t)b.shared + 1);
+	} else {
+		tape_of_step(b.step, &now, NULL, "y", NULL);
+		share_operands(&b, b.step, 0);
+	}
 	b.after = b.shared;
+	b.out_alone = !b.out;
+	b.out = b.out ? b.out : tape_new();
 	share_operands(&b, b.out, b.after);
 	if (e->step->forced && !rows_sustained(e->step)) {
 		b.forced = b.shared;
@@ -105,13 +127,13 @@ struct batch plan_batch(const struct emitter *e)
 /* Rows that a step changes of an instance's memory, the first of them */
 int batch_stepped_rows(const struct emitter *e)
 {
-	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carried.count;
+	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carried.count + has_regions(e);
 }
 
 /* Groups of lanes that step in turns, so that sums of one wait for none of their own */
 int batch_groups(const struct emitter *e)
 {
-	int groups = 8 / batch_stepped_rows(e);
+	int groups = has_regions(e) ? 1 : 8 / batch_stepped_rows(e);
 	return groups < 1 ? 1 : groups > MOST_GROUPS ? MOST_GROUPS : groups;
 }
 

@@ -11,6 +11,7 @@ struct batch {
 	const char **shared_text;       /* first those that the step reads, before it; */
 	int after;                      /* from here on those of the outputs, after it */
 	struct tape *step, *out;        /* what lanes compute */
+	bool out_alone;                 /* outputs are no such sums: they are those of NAME_out */
 	int forced;                     /* index of the forced part; -1: none */
 	bool sampled;                   /* of peaks: nothing acts on the states but polynomials through samples */
 	int lanes;                      /* factors of the instance that lanes have; */
@@ -18,6 +19,7 @@ struct batch {
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
 
+bool has_regions(const struct emitter *e);                        /* lanes leave what may have an event in a step */
 struct batch plan_batch(const struct emitter *e);
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */

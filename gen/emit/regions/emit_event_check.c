@@ -338,17 +338,22 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 	emit_case_end(e);
 }
 
-void emit_event_check(const struct emitter *e)
+void emit_slopes_of_ramps(const struct emitter *e)
 {
-	struct pieces pieces = pieces_of(e->step);
-	const struct layout *layout = &e->step->layout;
-	const char **x = operands_of_x(e);
 	for (int i = 0; i < e->system->inputs; i++) {
 		int of = place_of_input(e, i);
 		if (e->system->input[i].hold)
 			say(e, "    const double part%d = %s;  /* its slope */\n", of,
 			    spell(e, "(u[%d] - s->u[%d]) / $N_H", of, of));
 	}
+}
+
+void emit_event_check(const struct emitter *e)
+{
+	struct pieces pieces = pieces_of(e->step);
+	const struct layout *layout = &e->step->layout;
+	const char **x = operands_of_x(e);
+	emit_slopes_of_ramps(e);
 	for (int i = 0; i < e->system->states && is_compensated(e); i++)
 		say(e, "    double low%d = s->low[%d];\n", i, place_of_state(e, i));
 	if (e->model->params.retuned)
@@ -377,4 +382,114 @@ void emit_event_check(const struct emitter *e)
 				"    }\n"
 			      : "        $o_seek(s, now);\n"
 				"    }\n");
+}
+
+/* ---- the same over lanes of a batch: each in its region, those left that may have an event ---- */
+
+/* A sum that no state is part of is one number for all lanes. */
+static const char *over_lanes(const struct emitter *e, const struct region_tables *t, int row,
+			      const char *const *operand, const char *text)
+{
+	bool any = false;
+	for (int j = 0; j < e->system->states; j++)
+		any = any || (operand[j] && acts_at(t, row, j));
+	return any ? text : format("pl_lanes_all(%s)", text);
+}
+
+/* Of states lanes, of what all instances share numbers */
+static const char **operands_over_lanes(const struct emitter *e)
+{
+	const char **x = operands_of_x(e);
+	for (int j = e->system->states; j < e->step->layout.size; j++)
+		x[j] = *x[j] ? format("now[%d]", j - e->system->states) : "";
+	return x;
+}
+
+static const char **sizes_over_lanes(const struct emitter *e, const char *const *x)
+{
+	const char **size = magnitudes(e, x);
+	for (int j = 0; j < e->system->states; j++)
+		size[j] = format("pl_lanes_size(%s)", x[j]);
+	return size;
+}
+
+static void emit_side_over_lanes(const struct emitter *e, const char *from, const char *to, int function, bool upper,
+				 double than)
+{
+	const char *ends = format("pl_lanes_%s(%s, %s)", upper ? "larger" : "smaller", from, to);
+	const char *reached = format("%s %c off%d", ends, upper ? '+' : '-', function);
+	const char *edge = format("pl_lanes_all(%s)", shortest(than));
+	say(e, "        here = pl_lanes_both(here, pl_lanes_below(%s, %s));\n", upper ? reached : edge,
+	    upper ? edge : reached);
+}
+
+/* A switching function at the start, or the end: the state itself, or a local */
+static const char *function_over_lanes(const struct emitter *e, const struct check *l, int i, const char *local,
+				       const char *const *x)
+{
+	const char *text = row_text(&l->row, i, x, NULL, 22);
+	bool lanes = strncmp(over_lanes(e, &l->row, i, x, text), "pl_lanes_all", 12) != 0;
+	if (lanes && !strchr(text, ' '))
+		return text;
+	say(e, "        const pl_lanes %s%d = %s;\n", local, i, over_lanes(e, &l->row, i, x, text));
+	return format("%s%d", local, i);
+}
+
+static void emit_function_over_lanes(const struct emitter *e, const struct pieces *p, const struct check *l, int region,
+				     int i)
+{
+	const struct switching *s = e->model->switching;
+	const int interval = interval_of(s, region, i), at = region * s->functions + i;
+	const char *from = function_over_lanes(e, l, i, "from", l->x), *to = function_over_lanes(e, l, i, "to", l->end);
+	say(e, "        const pl_lanes off%d = %s;\n", i,
+	    over_lanes(e, &l->off, i, l->size, off_text(e, p, l->branch, i, l->size, 22)));
+	if (interval > 0)
+		emit_side_over_lanes(e, from, to, i, false, p->low[at]);
+	if (interval < s->function[i].breaks)
+		emit_side_over_lanes(e, from, to, i, true, p->high[at]);
+}
+
+static void emit_region_over_lanes(const struct emitter *e, const struct pieces *p, const char *const *x, int region)
+{
+	struct check l = check_of(e, p, x, e->model->switching->region[region].system);
+	const char **name = layout_names(&e->step->layout, e->system, e->model);
+	const int states = e->system->states;
+	l.size = sizes_over_lanes(e, x);
+	say(e, "    here = pl_lanes_both(small, pl_lanes_equal(y[%d], pl_lanes_all(%d.0)));\n"
+	       "    if (pl_lanes_flags(here) != 0) {\n", states, region);
+	for (int i = 0; i < e->step->layout.size; i++) {
+		const char *end = row_text(&l.full, i, x, NULL, 22);
+		if (i < states || is_read_at_end(e, &l, i))
+			say(e, "        const %s end%d = %s;  /* %s */\n", i < states ? "pl_lanes" : "double", i,
+			    i < states ? over_lanes(e, &l.full, i, x, end) : end, name[i]);
+	}
+	for (int i = 0; i < functions_of(e); i++)
+		emit_function_over_lanes(e, p, &l, region, i);
+	for (int i = 0; i < states; i++)
+		say(e, "        y[%d] = pl_lanes_choose(here, end%d, y[%d]);\n", i, i, i);
+	say(e, "        stepped = pl_lanes_either(stepped, here);\n"
+	       "    }\n");
+}
+
+void emit_lanes_check(const struct emitter *e)
+{
+	const struct switching *s = e->model->switching;
+	struct pieces pieces = pieces_of(e->step);
+	const char **x = operands_over_lanes(e);
+	open_function(e, "One step of the lanes that have no event in it; behind the states y has the region",
+		      "PL_LANES_INLINE pl_lanes_truth $n_lanes_step(pl_lanes *y, const pl_lanes *factor, "
+		      "const double *now)");
+	for (int i = 0; i < e->system->states; i++)
+		say(e, "    const pl_lanes %s = y[%d];\n", x[i], i);
+	say(e, "    const pl_lanes_truth small = pl_lanes_below(%s, pl_lanes_all(%s));\n"
+	       "    pl_lanes_truth here, stepped = pl_lanes_below(pl_lanes_all(0.0), "
+	       "pl_lanes_all(-1.0));\n",
+	    size_of_x(e, &pieces, sizes_over_lanes(e, x), 22), shortest(pieces.large));
+	for (int r = 0; r < s->regions; r++)
+		if (s->region[r].possible)
+			emit_region_over_lanes(e, &pieces, x, r);
+	say(e, "    (void)factor;\n"
+	       "    (void)now;\n"
+	       "    return stepped;\n"
+	       "}\n");
 }

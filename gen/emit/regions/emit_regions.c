@@ -412,6 +412,37 @@ static void emit_full_step(const struct emitter *e)
 	emit_segment_end(e);
 }
 
+/* ---- the same over lanes of a batch ---- */
+
+void emit_shared_of_regions(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
+	const char **x = operands_of_x(e);
+	open_function(e, "now receives what all instances share in this step; time then advances by h",
+		      "static void $n_share_step($n *s, const double *u, double *now)");
+	for (int i = 0; i < e->system->inputs && has_guards(e); i++)
+		if (e->system->input[i].hold)
+			x[layout->input[i] + 1] = ramp_slope(e, place_of_input(e, i));
+	if (!has_guards(e))
+		emit_slopes_of_ramps(e);
+	emit_rotated_loads(e, needed_loads(e), false);
+	for (int j = e->system->states; j < layout->size; j++)
+		say(e, "    now[%d] = %s;\n", j - e->system->states, *x[j] ? x[j] : "1.0");
+	emit_step_end(e);
+	close_function(e, "u now");
+}
+
+void emit_lanes_of_regions(const struct emitter *e)
+{
+	if (!has_guards(e)) {
+		emit_lanes_check(e);
+		return;
+	}
+	emit_sizes(e, "unmet_lanes.h", { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
+		   { "REGIONS", regions_of(e)->regions }, { "CAPPED", capped_entries(e) });
+	say(e, "#include \"unmet_lanes.h\"\n");
+}
+
 /* ---- how an event is found ---- */
 
 #define note(e, ...) say_words(e, spell(e, __VA_ARGS__))

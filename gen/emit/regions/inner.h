@@ -109,5 +109,7 @@ void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p);
 const char **operands_of_x(const struct emitter *e);               /* of a step: locals; "" where x is 1 */
 void emit_event_check(const struct emitter *e);                   /* states and loads are in locals */
+void emit_slopes_of_ramps(const struct emitter *e);                /* locals that operands_of_x names */
+void emit_lanes_check(const struct emitter *e);                   /* the same check over lanes */
 
 #endif

@@ -18,6 +18,9 @@ void emit_event_note_of_parts(const struct emitter *e);
 void declare_region_search(const struct emitter *e);               /* what the step calls of it */
 void emit_region_step(const struct emitter *e);
 void emit_region_at(const struct emitter *e);
+/* For batches: what instances share of a step, x but its states; a step over lanes that leaves those with events */
+void emit_shared_of_regions(const struct emitter *e);
+void emit_lanes_of_regions(const struct emitter *e);
 
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);

@@ -49,6 +49,15 @@ bool is_checked_by_tables(const struct step *step)
 	return possible_regions(step->model->switching) * step->layout.states * step->layout.size > TERMS;
 }
 
+/* ... but by numbers of each region, which lanes can; of guards search.h has the same limits */
+static bool is_checked_by_region(const struct step *step)
+{
+	enum { REGIONS = 16, NUMBERS = 64 };
+	const struct switching *s = step->model->switching;
+	return has_events(s) ? s->regions <= REGIONS && s->regions * step->layout.size <= NUMBERS
+			     : !is_checked_by_tables(step);
+}
+
 /* Over h or a shorter piece */
 static struct table *table_over(const struct step *step, struct branch *b, int halvings)
 {
@@ -93,6 +102,7 @@ static void plan_check(struct step *step)
 	bool any = false;
 	step->regions.event_check.searches = no_check(step);
 	step->regions.event_check.is_made = !step->regions.event_check.searches;
+	step->regions.event_check.by_region = step->regions.event_check.is_made && is_checked_by_region(step);
 	/* crossings go by tables of fixed numbers */
 	step->regions.event_check.fast_path = step->regions.event_check.is_made && !step->model->params.retuned &&
 				   !has_events(step->model->switching);

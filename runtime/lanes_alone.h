@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* lanes_alone.h: instances of a batch by themselves, to and from their numbers in the arrays.  Part of batch.h.  Of
+ * models with events an instance has its states, the region, and the bytes of its contact and status; where a step may
+ * have an event the lane is left as it was, and NAME_step takes it, from what all instances share before that step. */
+
+PL_LANES_INLINE real PL(lane)(const pl_lanes *all, size_t l)
+{
+    real one;
+    memcpy(&one, (const char *)all + l * sizeof one, sizeof one);
+    return one;
+}
+
+PL_LANES_INLINE void PL(set_lane)(pl_lanes *all, size_t l, real one)
+{
+    memcpy((char *)all + l * sizeof one, &one, sizeof one);
+}
+
+#if PL_EVENTS
+/* Of an instance the numbers in which its contact and status stand */
+#define PL_CONTACT_ROWS ((sizeof(pl_contact) + sizeof(int) + sizeof(real) - 1) / sizeof(real))
+
+static void PL(contact_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+{
+    real row[PL_CONTACT_ROWS];
+    size_t i;
+    for (i = 0; i < PL_CONTACT_ROWS; i++) {
+        row[i] = b->y[(PL_STEPPED + i) * b->count + j];
+    }
+    memcpy(&one->contact, row, sizeof one->contact);
+    memcpy(&one->status, (const char *)row + sizeof one->contact, sizeof one->status);
+}
+
+static void PL(contact_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *one)
+{
+    pl_contact contact = one->contact;
+    real row[PL_CONTACT_ROWS] = {0};
+    size_t i;
+    contact.crossings = 0;
+    memcpy(row, &contact, sizeof contact);
+    memcpy((char *)row + sizeof contact, &one->status, sizeof one->status);
+    for (i = 0; i < PL_CONTACT_ROWS; i++) {
+        b->y[(PL_STEPPED + i) * b->count + j] = row[i];
+    }
+}
+
+void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
+{
+    size_t i;
+    *s = b->shared;
+    for (i = 0; i < PL_STATES; i++) {
+        s->y[i] = b->y[i * b->count + j];
+    }
+    PL(contact_read)(b, j, s);
+}
+
+void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    size_t i;
+    for (i = 0; i < PL_STATES; i++) {
+        b->y[i * b->count + j] = s->y[i];
+    }
+    b->y[PL_STATES * b->count + j] = (real)s->contact.region;
+    PL(contact_write)(b, j, s);
+}
+
+#else
+/* Its coefficients are those of all: nothing that is asked of it behind this reads them. */
+static void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
+{
+    real row[PL_ROWS];
+    size_t i;
+    for (i = 0; i < PL_ROWS; i++) {
+        row[i] = b->y[i * b->count + j];
+    }
+    *s = b->shared;
+    memcpy(s, row, sizeof row);
+}
+
+static void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    real row[PL_ROWS];
+    size_t i;
+    memcpy(row, s, sizeof row);
+    for (i = 0; i < PL_ROWS; i++) {
+        b->y[i * b->count + j] = row[i];
+    }
+}
+#endif
+
+#if PL_FACTORS > 0
+static void PL(batch_factors)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+{
+    size_t i;
+    for (i = 0; i < PL_FACTORS && b->factors; i++) {
+        memcpy((char *)one + PL(factor_at)[i], &b->factors[i * b->count + j], sizeof(real));
+    }
+}
+#endif
+
+/* As instance j; its peaks are what its outputs are now. */
+static void PL(batch_begin)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+    PL_TYPE one = *s;
+    real out[PL_OUTPUTS];
+    size_t i;
+    PL(batch_give)(b, j, s);
+#if PL_FACTORS > 0
+    PL(batch_factors)(b, j, &one);
+#endif
+    PL(out)(&one, out);
+    for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
+        b->peak[i * b->count + j] = pl_magnitude(out[i]);
+    }
+}
+
+#if PL_FACTORS > 0
+int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
+{
+    PL_TYPE one = b->shared;
+    size_t i;
+    if (!b->factors || !(c->h == b->shared.coeffs.h)) {
+        return PL_NO_STEP;
+    }
+    one.coeffs = *c;
+    for (i = 0; i < PL_FACTORS; i++) {
+        memcpy(&b->factors[i * b->count + j], (const char *)&one + PL(factor_at)[i], sizeof(real));
+    }
+    return 0;
+}
+#endif
+
+void PL(batch_init)(PL_INSTANCES *b)
+{
+    size_t j;
+    PL(init)(&b->shared);
+    for (j = 0; j < b->count; j++) {
+#if PL_FACTORS > 0
+        (void)PL(batch_use)(b, j, &b->shared.coeffs);
+#endif
+        PL(batch_begin)(b, j, &b->shared);
+    }
+}
+
+void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
+{
+    PL_TYPE one = b->shared;
+    PL(set)(&one, PL(time)(&b->shared), y);
+    PL(batch_begin)(b, j, &one);
+}
+
+void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    PL(get)(&one, y);
+}
+
+int PL(batch_status)(const PL_INSTANCES *b, size_t j)
+{
+    PL_TYPE one;
+    PL(batch_take)(b, j, &one);
+    return PL(status)(&one);
+}
+
+#if PL_EVENTS
+/* ---- steps by themselves ---- */
+
+/* Instance j, lane l of y, after k steps of those ahead */
+static void PL(lane_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, const pl_lanes *y,
+                           size_t l, PL_TYPE *one)
+{
+    int i;
+    memcpy(one, ahead->head[k], sizeof ahead->head[k]);
+    PL(contact_read)(b, j, one);
+    for (i = 0; i < PL_STATES; i++) {
+        one->y[i] = PL(lane)(&y[i], l);
+    }
+}
+
+/* Step k of the lanes from instance j on that `kept` has no bit of */
+static void PL(step_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, pl_lanes *y, unsigned kept)
+{
+    size_t l;
+    int i;
+    for (l = 0; l < PL_AT_ONCE && j + l < b->count; l++) {
+#if PL_INPUTS > 0
+        const real *const u = ahead->u + (k - 1) * PL_INPUTS;
+#endif
+        PL_TYPE one;
+        if (kept >> l & 1) {
+            continue;
+        }
+        PL(lane_alone)(b, j + l, ahead, k - 1, y, l, &one);
+        PL(step)(&one PL_GIVEN);
+        for (i = 0; i < PL_STATES; i++) {
+            PL(set_lane)(&y[i], l, one.y[i]);
+        }
+        PL(set_lane)(&y[PL_STATES], l, (real)one.contact.region);
+        PL(contact_write)(b, j + l, &one);
+    }
+}
+
+/* A step: those in lanes that are sure to have no event, then the others.  Only for these lanes are in memory. */
+PL_LANES_INLINE void PL(lanes_step_all)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, pl_lanes *y,
+                                        const pl_lanes *factor)
+{
+    const unsigned kept = pl_lanes_flags(PL(lanes_step)(y, factor, ahead->now[k]));
+    if (kept != ((unsigned)1 << (PL_AT_ONCE - 1)) * 2 - 1) {
+        pl_lanes now[PL_STEPPED];
+        memcpy(now, y, sizeof now);
+        PL(step_alone)(b, j, ahead, k, now, kept);
+        memcpy(y, now, sizeof now);
+    }
+}
+
+#if PL_OUT_ALONE
+/* Outputs after step k that no sum over lanes gives */
+static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, const pl_lanes *y,
+                          pl_lanes *value)
+{
+    size_t l;
+    int i;
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        value[i] = pl_lanes_all(0);
+    }
+    for (l = 0; l < PL_AT_ONCE && j + l < b->count; l++) {
+        real out[PL_OUTPUTS];
+        PL_TYPE one;
+        PL(lane_alone)(b, j + l, ahead, k, y, l, &one);
+        PL(out)(&one, out);
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            PL(set_lane)(&value[i], l, out[i]);
+        }
+    }
+}
+#endif
+#endif
