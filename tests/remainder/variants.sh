@@ -12,7 +12,10 @@
 #     order=N         of scheme taylor, which N makes fixed
 #     over=K          beside it: one expansion is over so many steps
 #     stages=N        of the line's scheme, or of etdcol
+#     edit=SCRIPT     the spec after `sed SCRIPT`
 #     anything else   for plgen
+# regions=1 in the environment, as ../switching/variants.sh has it: of piecewise-linear models, without NAME_rhs; their
+# table has their functions of regions and is called NAME_table.
 set -eu
 LC_ALL=C
 export LC_ALL
@@ -24,13 +27,16 @@ list=$2
 code=$3
 header=$4
 shift 4
-table=$(basename "$header" _variants.h)
+table=$(basename "$header" _variants.h)${regions:+_table}
+rhs=--rhs
+[ -z "${regions:-}" ] || rhs=
 work=$(mktemp -d "${TMPDIR:-/tmp}/variants.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 . "${0%/*}/../made.sh"
 
 specs_of "$@"
+mkdir "$work/edited"
 : >"$work/names"
 grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
     as=$name
@@ -45,6 +51,9 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             order=*) order=${option#order=} ;;
             over=*) over=" over ${option#over=}" ;;
             stages=*) stages=${option#stages=} ;;
+            edit=*)
+                sed -e "${option#edit=}" "$spec" >"$work/edited/$name.spec"
+                spec=$work/edited/$name.spec ;;
             at=*)
                 operator=$(printf '%s' "${option#at=}" | tr '_' ' ')
                 {
@@ -73,7 +82,7 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name schemes steps options; do
             [ "$scheme" = - ] && of_stages=etdcol
             [ "$step" = - ] || choice="$choice --step $step"
             # shellcheck disable=SC2086
-            "$plgen" --fast --rhs $choice $given ${order:+--scheme "taylor $order$over"} \
+            "$plgen" --fast $rhs $choice $given ${order:+--scheme "taylor $order$over"} \
                 ${stages:+--scheme "$of_stages $stages"} -o "$work/$prefix.c" "$spec" \
                 2>"$work/said" ||
                 { cat "$work/said" >&2; exit 1; }
@@ -92,7 +101,19 @@ done
 {
     echo "#include \"$(basename "$header")\""
     made c
+    members='\&&_Phi[0][0]' none=NULL
+    if [ -n "${regions:-}" ]; then
+        members='&_region_of, &_crossed_of, &_crossings_of' none='NULL, NULL, NULL'
+        while read -r name; do
+            echo "static int ${name}_region_of(const void *s)"
+            printf '{\n    return %s_region((const %s *)s);\n}\n' "$name" "$name"
+            echo "static uint64_t ${name}_crossed_of(const void *s)"
+            printf '{\n    return %s_crossed((const %s *)s);\n}\n' "$name" "$name"
+            echo "static int ${name}_crossings_of(const void *s, pl_crossing *crossing)"
+            printf '{\n    return %s_crossings((const %s *)s, crossing);\n}\n' "$name" "$name"
+        done <"$work/names"
+    fi
     echo "const struct variant ${table}[] = {"
-    sed 's/.*/    {\&&_model, \&&_Phi[0][0]},/' "$work/names"
-    echo '    {NULL, NULL}};'
+    sed "s/.*/    {\\&&_model, $members},/" "$work/names"
+    echo "    {NULL, $none}};"
 } >"$code"
