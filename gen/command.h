@@ -30,6 +30,7 @@ struct options {
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
 	const char *page;               /* the page that is written instead; NULL: none */
+	bool page_in_report;            /* as part of the page of --report */
 	const char *fmu;                /* the FMU that is written instead; NULL: none */
 	int fmu_version;                /* 2 or 3; 0: not said */
 	bool fmu_binary;                /* with the compiled one; */

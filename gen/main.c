@@ -322,7 +322,7 @@ static const char *header_name(const struct work *w)
 static void measure_board(struct work *w)
 {
 	const enum print print = w->options.print;
-	if (print != PRINT_EXPLAIN && print != PRINT_JSON && print != PRINT_REPORT)
+	if (print != PRINT_EXPLAIN && print != PRINT_JSON && print != PRINT_REPORT && !w->options.page_in_report)
 		return;
 	struct board_cost *cost = NEW(struct board_cost);
 	*cost = board_cost_of(w->spec->name_at, w->step);
@@ -346,7 +346,7 @@ static void print_main_text(void *context)
 		print_picture(to, w->step, options->value, options->amplitude, &options->look,
 			      picture_of_file(options->output));
 		break;
-	case PRINT_REPORT:   print_page(to, w->step, options->banner, &options->look); break;
+	case PRINT_REPORT:   print_page(to, w->step, options->banner, &options->look, NULL); break;
 	}
 }
 

@@ -159,8 +159,12 @@ static void take_fmu_binary(struct options *options, const char *value)
 /* Its model steps as plrun's does, but for the functions of libm, which WebAssembly has not. */
 static void take_page(struct options *options)
 {
-	if (options->page)
-		options->bundle = options->request.fast = options->request.own_math = true;
+	if (!options->page)
+		return;
+	options->bundle = options->request.fast = options->request.own_math = true;
+	options->page_in_report = options->print == PRINT_REPORT;
+	if (options->page_in_report)
+		options->print = PRINT_C;
 }
 
 static void take_rows(struct options *options, const char *value)

@@ -246,9 +246,10 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	put_member(to, "plgen", PLGEN_VERSION);
 	fputs(",", to);
 	put_member(to, "spec", spec->source->text);
-	fprintf(to, ",\"h\":%s,\"coords\":%d,\"hidden\":%d,\"constrained\":%s",
+	fprintf(to, ",\"h\":%s,\"coords\":%d,\"hidden\":%d,\"constrained\":%s,\"linear\":%s,\"whole\":%s",
 		shortest(round_rational(delays ? delays->h : step->model->h)), step->shown->model->n, spec->drawn,
-		spec->count.multipliers > 0 ? "true" : "false");
+		spec->count.multipliers > 0 ? "true" : "false", is_nonlinear(step) ? "false" : "true",
+		delays ? "false" : "true");
 	put_variables(to, "states", &v, FMU_STATE, v.count);
 	put_variables(to, "outputs", &v, FMU_OUTPUT, shown);
 	put_variables(to, "inputs", &v, FMU_INPUT, v.count);
@@ -263,8 +264,8 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 static void put_policy(FILE *to)
 {
 	fputs("<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; script-src ", to);
-	fprintf(to, "'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; base-uri 'none'; form-action 'none'\"/>\n",
-		runtime_text("script.sum"), runtime_text("style.sum"));
+	fprintf(to, "'sha256-%s' 'sha256-%s' 'wasm-unsafe-eval'; style-src 'sha256-%s'; base-uri 'none'; form-action "
+		    "'none'\"/>\n", runtime_text("load.sum"), runtime_text("script.sum"), runtime_text("style.sum"));
 }
 
 static bool has_outputs(const struct spec *spec)
@@ -294,8 +295,8 @@ static bool print_live_page(FILE *to, const struct step *step, const char *code,
 		return false;
 	fputs("</script>\n<script type=\"text/plain\" id=\"wasm\">", to);
 	put_base64(to, (unsigned char *)wasm, length);
-	fprintf(to, "</script>\n<script>%s%s</script>\n</body>\n</html>\n", runtime_text("engine.js"),
-		runtime_text("page.js"));
+	fprintf(to, "</script>\n<script type=\"text/plain\" id=\"script\">%s</script>\n<script>%s</script>\n</body>\n"
+		    "</html>\n", runtime_text("script.gz"), runtime_text("load.js"));
 	return true;
 }
 
@@ -305,12 +306,19 @@ bool write_page(const struct options *options, const struct step *step, struct f
 {
 	if (!options->page)
 		return true;
-	struct file *f = file_new(options->page);
+	struct file *f = options->page_in_report ? file_inside() : file_new(options->page);
 	const bool made = print_live_page(f->to, step, code->text, options->look.title);
 	file_close(f);
 	if (made && f->length > LARGE_PAGE)
 		say_note(step->model->spec->name_at, "the page has %zu kB, since the step has large tables",
 			 f->length / 1000);
 	file_drop(code);
+	if (!options->page_in_report)
+		return made;
+	struct file *report = file_new(options->page);
+	if (made)
+		print_page(report->to, step, options->banner, &options->look, f->text);
+	file_close(report);
+	file_drop(f);
 	return made;
 }

@@ -149,8 +149,8 @@ static void check_live_page(const struct options *options)
 		{ options->output, "-o" }, { options->fmu, "--fmu" }, { options->a2l, "--a2l" },
 		{ options->print != PRINT_C, option_of_print(options->print) }, { options->rhs, "--rhs" },
 		{ options->request.selftest, "--selftest" }, { options->request.batch, "--batch" },
-		{ options->look.dark, "--dark" }, { options->request.single, "--real float" },
-		{ options->request.sensitivity, "--sensitivity" }
+		{ options->look.dark && !options->page_in_report, "--dark" },
+		{ options->request.single, "--real float" }, { options->request.sensitivity, "--sensitivity" }
 	};
 	if (!options->page)
 		return;

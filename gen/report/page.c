@@ -311,7 +311,21 @@ static bool is_there(const struct section *section, const struct step *step)
 	return !section->applies || section->applies(step);
 }
 
-void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look)
+/* In a frame that has an origin of its own, under its own policy */
+static void print_frame(FILE *to, const char *live)
+{
+	fputs("<h2 id=\"live\">The model runs</h2>\n<iframe title=\"The model runs\" sandbox=\"allow-scripts "
+	      "allow-downloads\" style=\"width:100%;height:50rem;border:1px solid #ccc\" srcdoc=\"", to);
+	for (; *live; live++)
+		if (*live == '&' || *live == '"')
+			fputs(*live == '&' ? "&amp;" : "&quot;", to);
+		else
+			fputc(*live, to);
+	fputs("\"></iframe>\n", to);
+}
+
+void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look,
+		const char *live)
 {
 	const struct model *model = step->shown->model;
 	const char *name = model->delays ? model->delays->name : model->name;
@@ -324,10 +338,14 @@ void print_page(FILE *to, const struct step *step, const char *options, const st
 		model->written->n, model->written->n == 1 ? "" : "s", model->written->system.states, inputs,
 		inputs == 1 ? "" : "s", model->outputs,
 		model->outputs == 1 ? "" : "s", *options ? " " : "", html_text(options));
+	if (live)
+		fputs("<a href=\"#live\">The model runs</a>\n", to);
 	for (int i = 0; i < SECTIONS; i++)
 		if (is_there(&sections[i], step))
 			fprintf(to, "<a href=\"#s%d\">%s</a>\n", i, sections[i].title);
 	fputs("</nav>\n", to);
+	if (live)
+		print_frame(to, live);
 	for (int i = 0; i < SECTIONS; i++) {
 		if (!is_there(&sections[i], step))
 			continue;

@@ -267,7 +267,8 @@ void picture_in_page(FILE *to, const struct step *step, const char *kind, bool d
 
 /* HTML, with everything in it */
 const char *html_text(const char *text);         /* < > & and quotes escaped */
-void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look);
+void print_page(FILE *to, const struct step *step, const char *options, const struct picture_look *look,
+		const char *live);              /* a page that runs the model, in a frame; NULL: none */
 
 /* ---- program.c, explain.c, json.c, solution.c ---- */
 

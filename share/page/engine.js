@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* The first part of the script of a page of plgen --page: an engine drives the model's WebAssembly. The loop of a frame
- * allocates nothing: all arrays are made at the start. */
+/* The first part of the script of a page of plgen --page: an engine drives the model's WebAssembly, a history keeps its
+ * rows, a response is the frequency response of its step. The loop of a frame allocates nothing: all arrays are made at
+ * the start. */
 "use strict";
 
 /* ---- the engine: the model, and the samples of its inputs ---- */
@@ -152,4 +153,189 @@ function fourier(re, im) {
         im[i] += y;
       }
     }
+}
+
+/* ---- the frequency response of the step, linear about the state as it is now ---- */
+
+/* What drives it: an input as sampled, or a jump by 1 of a velocity (where there are none, of a state) */
+function drivesOf(model) {
+  const inputs = model.inputs.map((u, i) => ({...u, input: i, ahead: model.ahead[i]})).filter((u) => u.ahead < 2);
+  const fast = model.states.some((s) => s.name.endsWith("'"));
+  const jumps = model.states.map((s, i) => ({name: "a jump of " + s.name, state: i, moves: s.name}));
+  return inputs.concat(jumps.filter((s) => !fast || s.moves.endsWith("'")));
+}
+
+class StepResponse {
+  constructor(engine, points) {
+    const n = engine.states;
+    this.engine = engine;
+    this.points = points;
+    this.map = new Float64Array(n * n);             // The states after a step by the states before it
+    this.reads = new Float64Array(n);               // The output after a step by those states
+    this.before = new Float64Array(n);              // The states after a step by the sample before it,
+    this.after = new Float64Array(n);               // and by that of the step; then what a sine with z adds
+    this.re = new Float64Array(n * n);
+    this.im = new Float64Array(n * n);
+    this.x = new Float64Array(n);
+    this.xi = new Float64Array(n);
+    this.at = new Float64Array(n);                  // The state now
+    this.kept = new Float64Array(engine.columns);
+    this.frequency = new Float64Array(points);      // [Hz]
+    this.amplitude = new Float64Array(points);
+  }
+
+  /* A central difference of what a step makes, by state i, or (i < 0) by a sample: 0 before the step, 1 of the step */
+  difference(i, sample, drive) {
+    const e = this.engine, m = e.signals.length, from = 1 + e.outputs;
+    const of = i < 0 ? sample * m + drive.input : 0, size = this.sizeOf(i);
+    const probe = (by) => {
+      for (let k = 0; k < m; k++) {
+        e.u[k] = e.sample(k, e.count - 1 + e.model.ahead[k]);
+        e.u[m + k] = e.sample(k, e.count + e.model.ahead[k]);
+      }
+      e.y.set(this.at);
+      if (i < 0) e.u[of] += by;
+      else e.y[i] += by;
+      e.wasm.probe();
+    };
+    probe(size);
+    this.kept.set(e.rows.subarray(0, e.columns));
+    probe(-size);
+    for (let k = 0; k < e.columns; k++) this.kept[k] = (this.kept[k] - e.rows[k]) / (2 * size);
+    return from;
+  }
+
+  /* 1e-4 of the largest coordinate, or of the largest velocity */
+  sizeOf(i) {
+    const n = this.engine.model.coords;
+    let largest = 0;
+    if (i >= 0)
+      for (let k = i < n ? 0 : n; k < (i < n ? n : this.engine.states); k++)
+        largest = Math.max(largest, Math.abs(this.at[k]));
+    return 1e-4 * (largest || 1);
+  }
+
+  /* Of the output in this column of a row, times a factor; from the frequency `lowest` [Hz] */
+  measure(drive, column, factor, lowest) {
+    const e = this.engine, n = e.states;
+    e.wasm.look(0);
+    this.at.set(e.rows.subarray(1 + e.outputs, 1 + e.outputs + n));
+    for (let i = 0; i < n; i++) {
+      const from = this.difference(i, 0, drive);
+      for (let k = 0; k < n; k++) this.map[k * n + i] = this.kept[from + k];
+      this.reads[i] = factor * this.kept[column];
+    }
+    this.direct = [0, 0];
+    [this.before, this.after].forEach((to, sample) => {
+      if (drive.input === undefined) {
+        for (let k = 0; k < n; k++) to[k] = sample ? 0 : this.map[k * n + drive.state] * e.model.h;
+        this.direct[sample] = sample ? 0 : this.reads[drive.state] * e.model.h;
+        return;
+      }
+      const from = this.difference(-1, sample, drive);
+      for (let k = 0; k < n; k++) to[k] = this.kept[from + k];
+      this.direct[sample] = factor * this.kept[column];
+    });
+    this.reduce();
+    this.sweep(lowest);
+  }
+
+  /* To upper Hessenberg form by elimination, so that a frequency takes n^2 products */
+  reduce() {
+    const n = this.engine.states, a = this.map, columns = [this.before, this.after], reads = this.reads;
+    for (let m = 1; m < n - 1; m++) {
+      let pivot = m;
+      for (let i = m; i < n; i++)
+        if (Math.abs(a[i * n + m - 1]) > Math.abs(a[pivot * n + m - 1])) pivot = i;
+      if (pivot !== m) {
+        for (let j = 0; j < n; j++) [a[m * n + j], a[pivot * n + j]] = [a[pivot * n + j], a[m * n + j]];
+        for (let i = 0; i < n; i++) [a[i * n + m], a[i * n + pivot]] = [a[i * n + pivot], a[i * n + m]];
+        for (const b of [...columns, reads]) [b[m], b[pivot]] = [b[pivot], b[m]];
+      }
+      for (let i = m + 1; i < n && a[m * n + m - 1] !== 0; i++) {
+        const by = a[i * n + m - 1] / a[m * n + m - 1];
+        if (by === 0) continue;
+        for (let j = 0; j < n; j++) a[i * n + j] -= by * a[m * n + j];
+        for (let k = 0; k < n; k++) a[k * n + m] += by * a[k * n + i];
+        for (const b of columns) b[i] -= by * b[m];
+        reads[m] += by * reads[i];
+      }
+    }
+  }
+
+  /* The output's amplitude at f [Hz]: |reads (z - map)^-1 (before + z after) + direct|, z = e^{2 pi i f h} */
+  amplitudeAt(f) {
+    const n = this.engine.states, {re, im, x, xi} = this, angle = 2 * Math.PI * f * this.engine.model.h;
+    const c = Math.cos(angle), s = Math.sin(angle);
+    for (let k = 0; k < n * n; k++) {
+      re[k] = -this.map[k];
+      im[k] = 0;
+    }
+    for (let k = 0; k < n; k++) {
+      re[k * n + k] += c;
+      im[k * n + k] = s;
+      x[k] = this.before[k] + c * this.after[k];
+      xi[k] = s * this.after[k];
+    }
+    for (let k = 0; k + 1 < n; k++) this.eliminate(k);
+    let sum = this.direct[0] + c * this.direct[1], other = s * this.direct[1];
+    for (let k = n - 1; k >= 0; k--) {
+      for (let j = k + 1; j < n; j++) {
+        x[k] -= re[k * n + j] * x[j] - im[k * n + j] * xi[j];
+        xi[k] -= re[k * n + j] * xi[j] + im[k * n + j] * x[j];
+      }
+      const p = re[k * n + k], q = im[k * n + k], size = p * p + q * q, u = (x[k] * p + xi[k] * q) / size;
+      xi[k] = (xi[k] * p - x[k] * q) / size;
+      x[k] = u;
+      sum += this.reads[k] * x[k];
+      other += this.reads[k] * xi[k];
+    }
+    return Math.hypot(sum, other);
+  }
+
+  /* Row k + 1 less a multiple of row k, the larger of the two above */
+  eliminate(k) {
+    const n = this.engine.states, {re, im, x, xi} = this, a = k * n, b = a + n;
+    if (Math.hypot(re[b + k], im[b + k]) > Math.hypot(re[a + k], im[a + k])) {
+      for (let j = k; j < n; j++) {
+        [re[a + j], re[b + j]] = [re[b + j], re[a + j]];
+        [im[a + j], im[b + j]] = [im[b + j], im[a + j]];
+      }
+      [x[k], x[k + 1]] = [x[k + 1], x[k]];
+      [xi[k], xi[k + 1]] = [xi[k + 1], xi[k]];
+    }
+    const p = re[a + k], q = im[a + k], size = p * p + q * q;
+    if (size === 0) return;
+    const u = (re[b + k] * p + im[b + k] * q) / size, v = (im[b + k] * p - re[b + k] * q) / size;
+    for (let j = k; j < n; j++) {
+      re[b + j] -= u * re[a + j] - v * im[a + j];
+      im[b + j] -= u * im[a + j] + v * re[a + j];
+    }
+    x[k + 1] -= u * x[k] - v * xi[k];
+    xi[k + 1] -= u * xi[k] + v * x[k];
+  }
+
+  /* From `lowest` to half the rate of the steps; a point next to a peak is moved onto it. */
+  sweep(lowest) {
+    const f = this.frequency, a = this.amplitude, last = this.points - 1, ratio = 0.5 / this.engine.model.h / lowest;
+    for (let k = 0; k <= last; k++) {
+      f[k] = lowest * ratio ** (k / last);
+      a[k] = this.amplitudeAt(f[k]);
+    }
+    for (let k = 1; k < last; k++)
+      if (a[k] > a[k - 1] && a[k] >= a[k + 1]) this.refine(k, f[k - 1], f[k + 1]);
+  }
+
+  /* By thirds of what is between low and high */
+  refine(k, low, high) {
+    for (let turn = 0; turn < 40 && high - low > 1e-7 * high; turn++) {
+      const left = low + (high - low) / 3, right = high - (high - low) / 3;
+      if (this.amplitudeAt(left) > this.amplitudeAt(right)) high = right;
+      else low = left;
+    }
+    const a = this.amplitudeAt((low + high) / 2);
+    if (!(a > this.amplitude[k])) return;
+    this.frequency[k] = (low + high) / 2;
+    this.amplitude[k] = a;
+  }
 }

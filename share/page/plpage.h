@@ -78,6 +78,23 @@ EXPORTED(steps) int steps(int n)
     return PAGE(status)(&s);
 }
 
+/* Writes into row 0 what a step makes of the state y, with the samples before it and of it one behind the other in u;
+ * the run itself stays where it is. */
+EXPORTED(probe) void probe(void)
+{
+    static PAGE_TYPE kept;
+    kept = s;
+    PAGE(set)(&s, PAGE(time)(&s), y);
+    hold();
+#if PAGE_INPUTS
+    PAGE(step)(&s, u + PAGE_INPUTS);
+#else
+    PAGE(step)(&s);
+#endif
+    look(0);
+    s = kept;
+}
+
 EXPORTED(time) double time(void)
 {
     return PAGE(time)(&s);
