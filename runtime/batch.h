@@ -16,7 +16,7 @@
  *     PL(share_out)(s, now)                   what outputs read of it
  *     PL(lanes_step)(y, factor, now)          one step of as many instances as there are lanes
  *     PL(lanes_out)(y, factor, now, out)      and their outputs
- *     PL_FLUSHES, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED, PL_FLUSHES_LANES 1   of flush.h, where a step flushes
+ *     PL_FLUSHES, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED     of flush.h, where a step flushes
  *
  *     PL_EVENTS                      1: PL(lanes_step) leaves lanes that may have an event in the step as they are, and
  *                                    says which it has stepped; behind the states y has the region
@@ -37,9 +37,6 @@
 #include "numbers.h"
 
 #include "given.h"
-#if PL_FLUSHES > 0
-#include "flush.h"
-#endif
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
 #define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
@@ -289,18 +286,34 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
-#if !PL_EVENTS
-/* Step k of these */
-PL_LANES_INLINE void PL(lanes_go_on)(const PL(ahead) *ahead, size_t k, pl_lanes *y, const pl_lanes *factor)
+/* Behind step k of these, as flush.h: all but nothing is 0, in every lane */
+PL_LANES_INLINE void PL(lanes_flush)(const PL(ahead) *ahead, size_t k, pl_lanes *y)
 {
-    PL(lanes_step)(y, factor, ahead->now[k]);
 #if PL_FLUSHES > 0
-    if (k == ahead->steps && ahead->flushes) {
-        PL(lanes_flush)(y, y + PL_STATES);
+#if PL_SINGLE
+    const pl_lanes least = pl_lanes_all((real)0x1p-116);
+#else
+    const pl_lanes least = pl_lanes_all(0x1p-963);
+#endif
+    int i;
+    if (k < ahead->steps || !ahead->flushes) {
+        return;
+    }
+    PL_LANES_UNROLL
+    for (i = 0; i < PL_STATES; i++) {
+#if PL_FLUSHES > 1
+        if (PL(flush_part)[i] >= PL_DECAYING) {
+            continue;
+        }
+#endif
+#if PL_COMPENSATED
+        y[PL_STATES + i] = pl_lanes_kept(y[i], y[PL_STATES + i], least);
+#endif
+        y[i] = pl_lanes_kept(y[i], y[i], least);
     }
 #endif
+    (void)ahead, (void)k, (void)y;
 }
-#endif
 
 PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
 {
@@ -338,8 +351,9 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
 #if PL_EVENTS
             PL(lanes_step_all)(b, first + (size_t)g * PL_AT_ONCE, ahead, k, y[g], factor[g]);
 #else
-            PL(lanes_go_on)(ahead, k, y[g], factor[g]);
+            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
 #endif
+            PL(lanes_flush)(ahead, k, y[g]);
         }
         if (b->peak || out) {
             PL_LANES_UNROLL
@@ -420,7 +434,8 @@ PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(ahea
     for (k = 1; k <= ahead->steps; k++) {
         PL_LANES_UNROLL
         for (g = 0; g < groups; g++) {
-            PL(lanes_go_on)(ahead, k, y[g], factor[g]);
+            PL(lanes_step)(y[g], factor[g], ahead->now[k]);
+            PL(lanes_flush)(ahead, k, y[g]);
         }
         PL_LANES_UNROLL
         for (g = 0; g < groups; g++) {

@@ -254,11 +254,10 @@ PL_LANES_INLINE pl_lanes pl_lanes_all(real value)
     return zero + value;
 }
 
-/* `value`, and 0 where |of| < least < 1, lane by lane */
+/* `value`, and 0 where |of| < least, lane by lane */
 PL_LANES_INLINE pl_lanes pl_lanes_kept(pl_lanes of, pl_lanes value, pl_lanes least)
 {
-    const pl_lanes_truth tiny = pl_lanes_below(pl_lanes_size(of), least);
-    return pl_lanes_choose(pl_lanes_both(tiny, pl_lanes_below(least, pl_lanes_all(1))), pl_lanes_all(0), value);
+    return pl_lanes_choose(pl_lanes_below(pl_lanes_size(of), least), pl_lanes_all(0), value);
 }
 
 /* The larger of `most` and |value|; not a number where value is none */

@@ -41,8 +41,8 @@
 #ifndef PL_FLUSHES
 #define PL_FLUSHES 0
 #endif
-#ifndef PL_FLUSHES_LANES
-#define PL_FLUSHES_LANES 0
+#ifndef PL_FLUSHES_BESIDE
+#define PL_FLUSHES_BESIDE 0
 #endif
 #ifndef PL_EVENTS
 #define PL_EVENTS 0

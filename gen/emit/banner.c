@@ -112,12 +112,14 @@ static void banner_flush(const struct emitter *e)
 {
 	const struct denormal_flush *flush = e->step->linear.flush;
 	const bool single = e->model->request.single;
-	say(e, " * Denormal flush: every 64 steps states below %s of the largest%s", single ? "2^-120" : "2^-900",
-	    flush->parts > 1 ? " that they act on" : "");
+	say(e, " * Denormal flush: every 64 steps states become 0 that are below ");
 	if (flush->decaying > 0)
-		say(e, ", and below %s%s", single ? "1e-35" : "1e-290",
+		say(e, "%s%s", single ? "2^-116" : "2^-963",
 		    flush->decaying < flush->parts ? " where motions decay" : "");
-	say(e, ", become 0.\n");
+	if (flush->beside)
+		say(e, "%s%s of the largest%s", flush->decaying > 0 ? ", or\n * " : "", single ? "2^-120" : "2^-900",
+		    flush->parts > 1 ? " that they act on" : "");
+	say(e, ".\n");
 }
 
 /* What the form does to rounding, and what rounding has done to its constants */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* rest: what has decayed below 1e-290 (1e-35 in float) is 0 after 64 steps, what has not goes on, and what is no
+/* rest: what has decayed below 2^-963 (2^-116 in float) is 0 after 64 steps, what has not goes on, and what is no
  * number stays none. -DMODEL=pl_model -DREAL=double: `decaying_model` is one whose states all decay; of `mixed_model`
  * those called a... do, those called b... do not. With the argument `run`, by that function, else by steps. */
 #include "plrt.h"
@@ -54,7 +54,7 @@ static int on_its_way(const char *name, REAL found, REAL value)
 
 int main(int argc, char **argv)
 {
-    const REAL least = sizeof(REAL) == 4 ? (REAL)1e-35 : (REAL)1e-290;
+    const REAL least = sizeof(REAL) == 4 ? (REAL)0x1p-116 : (REAL)0x1p-963;
     const int run = argc > 1 && strcmp(argv[1], "run") == 0;
     go(&decaying_model, least / 1000, run);
     for (int i = 0; i < decaying_model.states; i++)

@@ -416,7 +416,6 @@ PL_LANES_INLINE void driven_lanes_out(const LANES *y, const LANES *factor, const
 #define PL_SIZE 3
 #define PL_MOMENTA 0
 #define PL_SAMPLED 0
-#define PL_FLUSHES_LANES 1
 #define PL_FLUSHES 1
 #define PL_DECAYING 1
 void driven_batch_init(instances *b);

@@ -429,9 +429,9 @@ typedef struct faded {
 typedef struct faded faded_whole;
 static const short faded_flush_part[] = {0, 1, 2};
 #ifdef REAL_IS_FLOAT
-static const real lowest = (real)1e-35, beside = (real)0x1p-120;
+static const real lowest = (real)0x1p-116, beside = (real)0x1p-120;
 #else
-static const real lowest = 1e-290, beside = 0x1p-900;
+static const real lowest = 0x1p-963, beside = 0x1p-900;
 #endif
 
 #ifdef REAL_IS_FLOAT
@@ -456,6 +456,7 @@ static const real lowest = 1e-290, beside = 0x1p-900;
 #define PL_STATES 3
 #define PL_FLUSHES 1
 #define PL_DECAYING 1
+#define PL_FLUSHES_BESIDE 1
 #define PL_COMPENSATED 1
 #include "flush.h"
 

@@ -161,7 +161,8 @@ void emit_flush(const struct emitter *e)
 		emit_integers(e, "short", "flush_part", e->system->states, flush->part);
 	}
 	emit_sizes(e, "flush.h", { "STATES", e->system->states }, { "FLUSHES", flush->parts },
-		   { "DECAYING", flush->decaying }, { "COMPENSATED", e->step->program->compensated });
+		   { "DECAYING", flush->decaying }, { "FLUSHES_BESIDE", flush->beside },
+		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#include \"flush.h\"\n");
 }
 

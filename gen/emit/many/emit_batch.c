@@ -224,6 +224,7 @@ static void emit_peaks_of_batch(struct batch *b)
 static void emit_include(const struct batch *b)
 {
 	const struct emitter *e = b->e;
+	const struct denormal_flush *flush = e->step->linear.flush;
 	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
 		   { "ROWS", has_regions(e) ? 0 : rows_of(e) }, { "EVENTS", has_regions(e) },
@@ -231,8 +232,7 @@ static void emit_include(const struct batch *b)
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
 		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps },
-		   { "FLUSHES_LANES", 1 }, { "FLUSHES", e->step->linear.flush->parts },
-		   { "DECAYING", e->step->linear.flush->decaying },
+		   { "FLUSHES", flush ? flush->parts : 0 }, { "DECAYING", flush ? flush->decaying : 0 },
 		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	if (has_peaks(e))

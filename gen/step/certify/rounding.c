@@ -287,7 +287,7 @@ struct errors errors_of(const struct step *step, const struct requirement *r)
 				.r = r,
 				.steps = samples_until(r, step->model->h),
 				.unit = single ? 0x1p-24 : 0x1p-53,
-				.tiny = single ? 1e-35 : 1e-270 };      /* of what a flush sets to 0 */
+				.tiny = single ? 0x1p-116 : 0x1p-896 };     /* of what a flush sets to 0 */
 }
 
 double largest_of_output(const struct step *exact, const struct requirement *r)

@@ -99,6 +99,7 @@ static void part_blocks(struct denormal_flush *flush, const struct branch *branc
 			flush_part(flush, &block[b]);
 }
 
+/* In a small model a wave soon arrives everywhere, and its step stays as short as it can. */
 void plan_flush(struct step *step)
 {
 	const struct switching *switching = step->model->switching;
@@ -112,5 +113,7 @@ void plan_flush(struct step *step)
 	}
 	if (step->modal)
 		part_modes(flush, step->modal);
-	step->linear.flush = step->is.flow == FLOW_LINEAR || step->is.flow == FLOW_RECIPE ? flush : NULL;
+	flush->beside = step->branch->system.states > LIMIT_UNROLLED_STATES;
+	const bool flushes = step->is.flow == FLOW_LINEAR || step->is.flow == FLOW_RECIPE;
+	step->linear.flush = flushes && (flush->beside || flush->decaying > 0) ? flush : NULL;
 }

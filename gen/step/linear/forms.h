@@ -93,6 +93,7 @@ void plan_modal(struct step *step);                          /* where it is aske
 
 struct denormal_flush {                       /* parts of the state that nothing but themselves moves */
 	int parts, decaying;        /* the first of them decay */
+	bool beside;                /* states are compared with others of their part, too */
 	int *part;                  /* per state as it is kept */
 };
 void leave_out_lost(struct step *step);                      /* factors; before the program */
