@@ -439,6 +439,7 @@ do for [m in first_words(csv, 1)] {
 	eval heading
 	load series(csv, sprintf("-v 'where=model=%s' -v x=ns_median -v y=largest -v xfactor=1e-3 -v most=10 %s", \
 		m, narrow ? '-v rest=no' : ''))
+	if (narrow) { set key maxrows (longest > 28 ? 10 : 5) }    # so that two columns fit
 	eval "plot ".clauses
 	eval write
 }
