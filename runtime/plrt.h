@@ -318,6 +318,13 @@ double pl_atan2(double y, double x);
 #define PL_UNROLL
 #endif
 
+/* The loop that follows becomes vectors as it stands: gcc at -O3 would write it out before, and leave it as that. */
+#if defined __GNUC__ && !defined __clang__ && __GNUC__ >= 8
+#define PL_ROLLED _Pragma("GCC unroll 1")
+#else
+#define PL_ROLLED
+#endif
+
 /* The length of an array of n entries, at least 1, as C has no empty arrays. */
 #define PL_ROOM(n) ((n) > 0 ? (n) : 1)
 

@@ -82,7 +82,8 @@ static void emit_rows(const struct emitter *e)
 	       "    int cell;\n", samples ? " and its samples" : "", rows->columns ? rows->columns : 1,
 	    samples ? format(", const double u[%d]", samples) : "");
 	for (int first = 0; first < rows->count; first += rows->group)
-		say(e, "    for (cell = 0; cell < %d; cell++) { out[cell%s] = %s; }\n",
+		say(e, "    PL_ROLLED\n"
+		       "    for (cell = 0; cell < %d; cell++) { out[cell%s] = %s; }\n",
 		    rows->group * rows->outputs, first ? format(" + %d", first * rows->outputs) : "",
 		    group_text(e, first));
 	close_function(e, rows->columns ? "" : "start");
@@ -257,7 +258,8 @@ static void emit_leap(const struct emitter *e)
 		const char *operand = column[k].operand;
 		add_summand(&s, format("%s_leap[%d][cell]%s", e->name, k, operand ? format(" * %s", operand) : ""));
 	}
-	say(e, "    for (cell = 0; cell < $N_STATES; cell++) { s->y[cell] %s %s; }\n",
+	say(e, "    PL_ROLLED\n"
+	       "    for (cell = 0; cell < $N_STATES; cell++) { s->y[cell] %s %s; }\n",
 	    e->step->form == FORM_DELTA ? "+=" : "=", sum_of(&s, 22));
 }
 

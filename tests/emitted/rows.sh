@@ -156,4 +156,26 @@ phasors 'a need' needed.spec
 "$plgen" --refresh 8 "$root/models/sdcsf.spec" >new.c 2>log &&
     "$plgen" --anchors 8 "$root/models/sdcsf.spec" >old.c 2>>log && cmp new.c old.c >>log 2>&1 && [ ! -s log ]
 result $? '--anchors: another name of --refresh, and nothing is said'
+
+# Blocks are loops that become vectors: at -O3 gcc leaves them as they are, written out they would be 1.4 times as long.
+# instructions OPTION: of what NAME_run consists of, by gcc with vectors of 256 bits
+instructions() {
+    gcc -std=c99 "$1" -march=x86-64-v3 -I"$root/runtime" -S -o - driven.c 2>>log | awk '
+        /^driven_(rows|block|run)(\.[a-z.0-9]*)?:/ { inside = 1 }
+        inside && /^\t[a-z]/ { count++ }
+        /^\t\.size/ { inside = 0 }
+        END { print count + 0 }'
+}
+printf '%s\n' 'model driven' 'input u hold first' 'coord x, y' "x'' + 0.1*x' + 2*x - y = u" \
+    "y'' + 0.2*y' + 3*y - x = 0" "output x, y, x', x''" 'step 0.1' >driven.spec
+: >log
+"$plgen" --fast -o driven.c driven.spec 2>>log
+if gcc -march=x86-64-v3 -E -x c /dev/null >/dev/null 2>&1 && ! gcc --version | grep -q clang; then
+    small=$(instructions -O2) large=$(instructions -O3)
+    echo "$small instructions at -O2, $large at -O3, at most 1.1 times as many" >>log
+    [ "$small" -gt 50 ] && [ $((10 * large)) -le $((11 * small)) ]
+    result $? 'rows of ramps: at -O3 the same loops as at -O2'
+else
+    skip 'rows of ramps: at -O3 the same loops as at -O2' 'there is no gcc for x86-64'
+fi
 tap_end
