@@ -164,16 +164,16 @@ static int has_listed(const pl_events *m, pl_instant *at, int loses, real time, 
 
 /* ---- what is held ---- */
 
-/* From the states: `times` the numbers of a row, or what is watched in their place */
+/* From the states: `times` the numbers of a row, or what is watched in their place. What no force moves has none. */
 static void take(const pl_events *m, pl_instant *at, int row, const real *back, const int *moving, real times)
 {
     const ptrdiff_t first = (ptrdiff_t)row * m->states;
     int i;
     for (i = 0; i < m->states; i++) {
         const int watch = moving ? moving[first + i] : -1;
-        const real factor = watch < 0 ? back[first + i] : value_of(m, at, watch);
-        if (factor < 0 || factor > 0) {
-            at->y[i] -= factor * times;
+        const real taken = times * (watch < 0 ? back[first + i] : value_of(m, at, watch));
+        if ((taken < 0 || taken > 0) && !pl_not_finite(&taken, 1)) {
+            at->y[i] -= taken;
             at->low[i] = 0;
         }
     }
@@ -255,7 +255,8 @@ static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
 }
 
 /* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance.  The root at which
- * it is let go may be off by what does not show beside the force over h, as one of third order is. */
+ * it is let go may be off by what does not show beside the force over h, as one of third order is.  Where no force
+ * holds it, as along x at (1, 0) of a circle, it is let go. */
 static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
 {
     const int watch = up ? m->hold[hold].up : m->hold[hold].down;
@@ -265,6 +266,10 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
         return -1;
     }
     w = watched(m, at, watch);
+    pull = column_at(&w, 0);
+    if (pl_not_finite(&pull, 1)) {
+        return 1;
+    }
     pull = certain(&w);
     if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * most_of(&w)) {
         return 1;

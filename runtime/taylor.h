@@ -500,7 +500,9 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, re
     for (i = 0; i < PL_STATES; i++) {
         y[i] = s->y[i] + (gain[i] + s->low[i]);
     }
-    PL_PUT_BACK(s, tau, y);
+    if (tau > 0) { /* now it is on them, and stays to the last bit */
+        PL_PUT_BACK(s, tau, y);
+    }
     (void)fresh;
 #endif
 }

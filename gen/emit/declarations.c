@@ -114,10 +114,6 @@ static void declare_checks(const struct emitter *e, bool rhs)
 	const char *note = e->ramps ? "as written; u: inputs, then their slopes" : "the equations as written";
 	if (e->model->reduction.place)
 		note = format("as written; y: all %d written states", e->model->written->system.states);
-	if (rhs && (e->model->contacts.drags > 0 || e->model->contacts.massless_sliders > 0 ||
-		    (e->model->switching && has_dry_friction(e->model->switching))))
-		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
-		      "--rhs has no formula for friction, whose force is a set where it sticks");
 	if (rhs)
 		announce(e, spell(e, "void   $n_rhs(double t, const double y[], %sdouble dydt[]);",
 				 given_inputs(e) ? "const double u[], " : ""), note);

@@ -218,6 +218,8 @@ static void emit_model_beside(const struct emitter *e)
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs)
 {
 	struct emitter e = emitter_new(to, step, options);
+	if (rhs)
+		check_rhs(&e);
 	emit_banner(&e);
 	emit_declarations(&e, rhs);
 	if (e.model->delays)
@@ -229,6 +231,8 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)
 {
 	struct emitter made = emitter_new(to, step, options), *e = &made;
+	if (rhs)
+		check_rhs(e);
 	emit_banner(e);
 	emit_if_any(e->prints->events, e);
 	if (header_name)

@@ -2,6 +2,7 @@
 /* NAME_rhs: the equations as written, for any ODE solver. */
 #include "steps.h"
 #include "model/building.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
 
 #include <string.h>
@@ -245,6 +246,14 @@ static void emit_unread(const struct emitter *e, struct read read)
 		read.states = read.states || e->model->written->system.velocity[i] >= 0;
 	say(e, "%s%s%s", read.time ? "" : "    (void)t;\n", read.inputs || !given_inputs(e) ? "" : "    (void)u;\n",
 	    read.states ? "" : "    (void)y;\n");
+}
+
+void check_rhs(const struct emitter *e)
+{
+	if (e->model->contacts.drags > 0 || e->model->contacts.massless_sliders > 0 ||
+	    (e->model->switching && has_dry_friction(e->model->switching)))
+		error((struct place){ source_argument("--rhs"), 0 }, "a solver has to go from event to event itself",
+		      "--rhs has no formula for friction, whose force is a set where it sticks");
 }
 
 bool rhs_needs_math(const struct emitter *e)

@@ -63,6 +63,7 @@ void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);
 void emit_jump(const struct emitter *e);
 void emit_rhs(const struct emitter *e);
+void check_rhs(const struct emitter *e);  /* refuses what no formula gives */
 bool rhs_needs_math(const struct emitter *e);
 
 /* ---- emit_constraints.c ---- */

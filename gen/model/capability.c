@@ -59,6 +59,16 @@ static const struct output *bent_output(const struct model *model)
 	return NULL;
 }
 
+/* One whose row the region changes: it reads an acceleration, or is not linear */
+static const struct output *regional_output(const struct model *model)
+{
+	for (int i = 0; i < model->outputs; i++)
+		for (int k = 0; k < model->remainder.force_columns; k++)
+			if (model->output[i].force_column && mpq_sgn(model->output[i].force_column[k]) != 0)
+				return &model->output[i];
+	return bent_output(model);
+}
+
 bool has_peak(const struct model *model)
 {
 	bool any = false;

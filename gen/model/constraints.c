@@ -84,10 +84,11 @@ static int state_at(const struct start *w, int coord, int level)
 	return level ? w->b->model->system.velocity[coord] : coord;
 }
 
-/* What a derivative's constraint moves are derivatives alone: the state is where it is without them. */
-static bool moves(const struct start *w, int coord, int row)
+/* What a derivative's constraint moves are derivatives alone: the state is where it is without them. A coordinate of
+ * first order has no velocity to move. */
+static bool moves(const struct start *w, int coord, int level, int row)
 {
-	return coord >= rows_of(w->b)->constraint[row].statement->own;
+	return coord >= rows_of(w->b)->constraint[row].statement->own && state_at(w, coord, level) >= 0;
 }
 
 static void find_slopes(struct start *w, int level)
@@ -99,7 +100,7 @@ static void find_slopes(struct start *w, int level)
 	for (int j = 0; j < w->n; j++) {
 		struct form **slope = form_derivatives(&w->b->collector, w->rows, held, false, j, level);
 		for (int i = 0; i < w->rows; i++)
-			w->slope[level][j * w->rows + i] = moves(w, j, i) ? slope[i] : form_number(0);
+			w->slope[level][j * w->rows + i] = moves(w, j, level, i) ? slope[i] : form_number(0);
 	}
 }
 
@@ -129,7 +130,8 @@ static void evaluate(struct start *w, int level)
 
 static double weight_of(const struct start *w, int coord, int level, double named)
 {
-	return w->named[state_at(w, coord, level)] ? named : 1;
+	const int state = state_at(w, coord, level);
+	return state < 0 ? 0 : w->named[state] ? named : 1;
 }
 
 /* L L^T of G W G^T, the largest pivot next, up to those that are none */
@@ -194,6 +196,8 @@ static double move(struct start *w, int level, double named)
 	solve_first(w, x);
 	for (int k = 0; k < w->n; k++) {
 		double by = 0;
+		if (state_at(w, k, level) < 0)
+			continue;
 		mpq_ptr value = w->value[state_at(w, k, level)];
 		for (int i = 0; i < w->rank; i++)
 			by += w->G[w->order[i] * w->n + k] * w->scale[w->order[i]] * x[i];
@@ -251,6 +255,8 @@ static void shift(struct start *w, int level, int point, double named)
 {
 	RATIONAL change = ZERO;
 	for (int k = 0; k < w->n; k++) {
+		if (state_at(w, k, level) < 0)
+			continue;
 		mpq_set_d(change, sin(1.7 * k + 2.3 * point + 1) * 0.125 * (weight_of(w, k, level, named) > 0));
 		mpq_add(w->value[state_at(w, k, level)], w->value[state_at(w, k, level)], change);
 	}

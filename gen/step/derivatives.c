@@ -110,9 +110,10 @@ static void derive(void *context)
 {
 	struct step *step = context;
 	const struct spec *spec = step->model->spec;
-	const char *against = step_objection(step, CAN_DERIVATIVES);
-	if (against)
-		error(spec->sensitivity[0].at, NULL, "%s%s", words_before(CAN_DERIVATIVES), against);
+	const struct facts facts = facts_of_step(step);
+	const struct objection against = objection_to(CAN_DERIVATIVES, &facts, step->model);
+	if (against.why)
+		error(spec->sensitivity[0].at, against.way, "%s%s", words_before(CAN_DERIVATIVES), against.why);
 	if (has_remainder(step))
 		check_smooth(step->model);
 	struct derivatives *d = NEW(struct derivatives);

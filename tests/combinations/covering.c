@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 52, MOST_REFUSALS = 600, LINE = 1000, ROW = 10, PAGE = 118 };
+enum { MOST = 54, MOST_REFUSALS = 700, LINE = 1000, ROW = 10, PAGE = 118 };
 
 /* ---- gen/model/capability.def ---- */
 
@@ -149,6 +149,7 @@ static struct facts facts_of(const bool *row)
 	f.curved = f.left;
 	f.inexact = f.left || f.holds;
 	f.measured = f.left || f.regions;
+	f.projects = f.series || f.collocation || !(f.approximates || f.normal);        /* scheme exact has its line */
 	f.tuned = f.tunable && !f.left;         /* else params are held, as inputs are */
 	return f;
 }
@@ -367,10 +368,10 @@ static void print_words(char *text, int column)
 	putchar('\n');
 }
 
-/* Columns and rows are known by letters, so that a row fits on a line. */
+/* Columns and rows are known by letters and digits, so that a row fits on a line. */
 static char letter(int i)
 {
-	return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"[i];
+	return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz12"[i];
 }
 
 static void print_pairs_table(void)
@@ -452,7 +453,7 @@ static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
 	     "# What goes with what\n\n"
-	     "You want to know whether two features or options go together: a row and a column have the letter of\n"
+	     "You want to know whether two features or options go together: a row and a column have the sign of\n"
 	     "each. `+`: they work. A number: plgen refuses them with that message below, where N is a number and X\n"
 	     "a name. Blank: one excludes the other. Every `+` is tested: a covering array has every pair, of the\n"
 	     "first ones every triple, and `step`, `run`, `jump`, `at`, `set` at odd times, copies and `--rhs` agree\n"
@@ -517,13 +518,14 @@ static void print_options(FILE *to)
 	if (has("loads") && !scheme && !has("friction") && !has("impact"))
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
-	const bool curves = kinks || has("smooth") || expands() || moves();
+	const bool curves = kinks || has("smooth") || has("constraint") || expands() || moves();
 	fprintf(to, "\n# class: %s\n",
 		has("friction")                      ? "sticking"
 			: kinks                      ? "kinked"
 			: has("piecewise") || has("impact") ? "piecewise"
 			: curves                     ? "smooth"
 						     : "linear");
+	fputs(has("constraint") ? "# held: 1\n" : "", to);
 	fprintf(to, "# changes:%s\n", has("change") ? " 0.053 0.1 0.21" : "");
 	if (has("friction") || has("delayed"))  /* what a second model has, of which CVODE solves the equations */
 		fprintf(to, "# instead: s/friction(b', 4)/max(-4, min(4, 40000*b'))/; "
@@ -531,7 +533,8 @@ static void print_options(FILE *to)
 			    "s/d(t - 0.02)/d_late/; s/^# whole: //\n", curves ? "kinked" : "piecewise");
 	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
-		fputs(has("smooth") || has("kinked") || has("loads") || has("piecewise") || has("friction") ||
+		fputs(has("smooth") || has("constraint") || has("kinked") || has("loads") || has("piecewise") ||
+				has("friction") ||
 				has("impact") ||
 		      expands() || moves() || has("delayed")
 			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
@@ -561,8 +564,8 @@ static void write_chain(FILE *to, int n)
  * out. */
 static void write_need(FILE *to, const char *output)
 {
-	const bool measured = has("smooth") || has("kinked") || has("piecewise") || has("loads") || expands() ||
-			      moves();
+	const bool measured = has("smooth") || has("constraint") || has("kinked") || has("piecewise") ||
+			      has("friction") || has("impact") || has("loads") || expands() || moves();
 	fprintf(to, "need %s within %s until 0.5", output,
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? has("modal") ? "5e-3" : "1e-4" : measured ? "1e-6" : "1e-9");
@@ -586,6 +589,8 @@ static void write_spec(FILE *to)
 			has("cos") ? ", pull = cos(4*t)" : ", pull = 0",
 			damped ? "" : ", m = 1");
 	fputs("coord a, b\n", to);
+	fputs(has("sensitivity") ? "sensitivity k, a\n" : "", to);
+	fputs(has("constraint") ? "coord c, g\n" : "", to);
 	fputs(has("first") ? "coord z\n" : "", to);
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
 	if (vector)
@@ -594,7 +599,8 @@ static void write_spec(FILE *to)
 	fputs(has("held") ? "input u\n" : "", to);
 	fputs(has("ramp") ? "input v hold first\n" : "", to);
 	fputs(has("delayed") ? "# whole: input d_late\n" : "", to);
-	fprintf(to, "init a = 0.2, b' = 0.5%s%s\n", has("first") ? ", z = 0.3" : "", vector ? ", q[2] = 0.1" : "");
+	fprintf(to, "init a = 0.2, b' = 0.5%s%s%s\n", has("constraint") ? ", c = 0.6, g = 0.8" : "",
+		has("first") ? ", z = 0.3" : "", vector ? ", q[2] = 0.1" : "");
 	if (vector) {
 		fputs("matrix K = ", to);
 		if (has("file"))
@@ -625,6 +631,8 @@ static void write_spec(FILE *to)
 	fputs(has("kinked") ? "-3*abs(b)*b' + " : "", to);
 	fputs(has("ramp") ? "0.05*v' + " : "", to);
 	fputs("0\n", to);
+	fputs(has("constraint") ? "c'' + 4*c = 0\n2*g'' + k*g = 0\nspring 2 between b, c\n"
+				  "constraint rod: c^2 + g^2 = 1\n" : "", to);
 	fputs(has("first") ? "0.5*z' + 2*z = a - b\n" : "", to);
 	fputs(has("reduce") ? "unseen'' + 5*unseen = 0\n" : "", to);
 	if (vector) {
@@ -639,7 +647,8 @@ static void write_spec(FILE *to)
 		fprintf(to, "output a, b%s%s%s\n", has("first") ? ", z" : "", vector ? ", q[1], q[3]'" : "",
 		        has("parts") ? ", p.speed" : "");
 	if (has("accel"))
-		fprintf(to, "output a'', s = 2*b'' - a%s\n", has("first") ? " + z'" : "");
+		fprintf(to, "output a'', s = 2*b'' - a%s%s\n", has("first") ? " + z'" : "",
+			has("constraint") ? ", rod" : "");
 	fputs(has("peaks") ? "output wave = a + 0.5*b, top = peak(a + 0.5*b)\n" : "", to);
 	fputs(has("nonlinear") ? "output r = a^2 + sin(b)*b'\n" : "", to);
 	fputs(has("impact") ? "when b >= 0.02: b' = -0.8*b'\n" : "", to);

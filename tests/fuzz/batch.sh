@@ -49,8 +49,8 @@ head_of() { # SPEC WHAT
 # `impact`, by one program
 heads_of() {
 	eval "$(awk -v quote="'" 'BEGIN {
-			count = split("options class retune plain beside instead changes impact", word, " ")
-			split("given class retune more beside instead changes impact", name, " ")
+			count = split("options class retune plain beside instead changes impact held", word, " ")
+			split("given class retune more beside instead changes impact held", name, " ")
 			for (i = 1; i <= count; i++)
 				to[word[i]] = name[i]
 		}
@@ -262,6 +262,17 @@ batch_add() {
 		fi
 		code="$code${tuned:+ $tuned.c}"
 	fi
+	varied=
+	for way in $(sed -n '/^sensitivity/{s/.*/11.9988 12 12.0012/p;q;}' "$spec"); do
+		varied="$varied, &v${way#*.}${id}_model"
+		code="$code v${way#*.}$id.c"
+		grep -v -e '^sensitivity' -e '^tunable' -e '^need' "$spec" |
+			sed "s/^param k = 12$/param k = $way/" >"$id.varied.spec"
+		make_c "v${way#*.}$id" "$id.varied.spec" "$(printf '%s\n' "$given" | sed 's/ --real float//')" &&
+			continue
+		echo "with another k: $(grep -m 1 error "v${way#*.}$id.said")" >"$id.wrong"
+		return
+	done
 	facts_of "$id"
 	fine=
 	case $eighths:$scheme:$class in
@@ -318,11 +329,14 @@ batch_add() {
 			region=${id}_where
 			echo "static int ${id}_where(const void *s) { return ${id}_region(s); }"
 		fi
+		derivatives='NULL, NULL'
+		[ -z "$varied" ] || derivatives="&${id}_derivatives, NULL"
 		model="&${id}_model, NULL"
 		by_eighths="${fine:+&}${fine:-NULL}${fine:+_model}, NULL"
 		if [ $real = float ]; then
 			model="NULL, &${id}_model"
 			by_eighths="NULL, ${fine:+&}${fine:-NULL}${fine:+_model}"
+			[ -z "$varied" ] || derivatives="NULL, &${id}_derivatives"
 		fi
 		if [ "$selftest" ]; then
 			selftest=${id}_tested
@@ -350,7 +364,7 @@ batch_add() {
 			"$again, ${tuned:+&}${tuned:-NULL}${tuned:+_model}, \"$retune\", ${lanes:-NULL}," \
 			"\"$impact\", $adds, $region, $regions, $other, $ratio, $tolerance," \
 			"$by_eighths, \"$lost\", $written, $may, $order," \
-			"${sustains:-NULL}},"
+			"${sustains:-NULL}, $derivatives, {${varied#, }}, ${held:-0}},"
 	} >"$id.subject"
 	echo "$code" >"$id.code"
 	printf '%s\n' "$id" >>"subjects_$cc.list"

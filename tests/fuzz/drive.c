@@ -15,6 +15,7 @@
  *     jump, set, retune                  1e-12 per step; at(h): 1e-12; at(0): get, to the last bit
  *     another scheme                     1e-6, and what the model's own steps make: as it differs from its eighths
  *     retune, by steps to a tolerance    twice the tolerance more, per step
+ *     derivatives                        1e-5 of the largest of their column, by differences; 1e-9 backwards
  *     run                                2 units in the last place per step, and what outputs make of those of states;
  *                                        restore: to the last bit
  *     a batch                            1e-12 per step of one that steps alone
@@ -283,7 +284,7 @@ static void judge_set(void)
 		model_step(s, u);
 	}
 	for (int i = 0; i < states; i++)
-		y[i] = (double)((i * 29 + 7) % 41 - 20) / 64;
+		y[i] = of->held ? row[STEPS / 2].y[i] : (double)((i * 29 + 7) % 41 - 20) / 64;
 	model_set(s, 0.3515625, y);
 	model_get(s, u);
 	if (!same_bits(u, y, states))
@@ -446,6 +447,7 @@ static int judge(const char *name)
 		judge_at();
 		judge_set();
 		judge_retune();
+		judge_derivatives();
 	}
 	if (of->selftest) {
 		const double ulps = of->selftest();

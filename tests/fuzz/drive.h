@@ -41,6 +41,10 @@ struct subject {
 	int may;                    /* what NAME_status may tell: of a fixed order, that it misses the tolerance */
 	int order;                  /* in h: what is beyond a bound has to be of it, by `fine`; 0: nothing may be */
 	double (*sustained)(void);  /* the largest part of a state that is not kept in it, by SUSTAINED; or NULL */
+	const pl_derivatives *varied;   /* by k and by the initial value of a; or */
+	const pl_derivativesf *variedf; /* of one in float; NULL: none are asked for */
+	const pl_model *beside[3];  /* the spec with k = 11.9988, 12 and 12.0012, in double, of the same scheme */
+	int held;                   /* constraints hold the state: it is set to states of its run only */
 };
 
 extern const struct subject subjects[];     /* up to one without a name */

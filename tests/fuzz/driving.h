@@ -85,4 +85,8 @@ bool in_order(const void *s, double found, double by_eighths_found, double expec
 void judge_steps(void *s, int from, int steps, double step, struct row *first, const char *what);
 void judge_beside(struct beside *b, int from, int steps, const char *what);
 
+/* ---- drive_derivatives.c: its derivatives against differences ---- */
+
+void judge_derivatives(void);
+
 #endif

@@ -97,18 +97,9 @@ static struct varied_model vary(const struct step *step, const struct sensitivit
 	return v;
 }
 
-static void check_outputs(const struct model *model, const struct sensitivity *by)
-{
-	for (int o = 0; o < model->outputs; o++)
-		if (model->output[o].left)
-			error(by->at, "outputs that are linear in states, loads and inputs have one",
-			      "a sensitivity of output '%s' beside events is not built yet", model->output[o].name);
-}
-
 struct varied_model *varied_models(const struct step *step)
 {
 	const struct derivatives *d = step->derivatives;
-	check_outputs(step->model, &d->column[0]);
 	struct varied_model *v = ARRAY(struct varied_model, (size_t)d->columns);
 	for (int i = 0; i < d->columns; i++)
 		v[i] = vary(step, &d->column[i]);
