@@ -50,9 +50,30 @@ static bool is_late(const struct sequence *s)
 	return s->kind == SEQUENCE_RATE;
 }
 
+/* Those too that have what a solution adds to the velocities */
 static bool is_solution(const struct sequence *s)
 {
-	return s->kind == SEQUENCE_SOLUTION;
+	return s->kind == SEQUENCE_SOLUTION || s->shifts;
+}
+
+/* Whether velocities are in it whose k-th has the one before of solutions */
+static bool mark_ahead(const struct expansion *x, const bool *solved, int index)
+{
+	struct sequence *s = &x->sequence[index];
+	SCRATCH int *operand = NULL;
+	if (s->kind == SEQUENCE_INTEGRAL && s->state != NONE)
+		s->ahead = is_any(solved, s);
+	for (int i = sequence_operands(s, &operand) - 1; i >= 0 && s->kind == SEQUENCE_SUM; i--)
+		s->ahead |= mark_ahead(x, solved, operand[i]);
+	return s->ahead;
+}
+
+/* What shifted rates read */
+static void find_ahead(const struct expansion *x, const bool *solved)
+{
+	for (int i = 0; i < x->count; i++)
+		if (x->sequence[i].shifts)
+			mark_ahead(x, solved, x->sequence[i].a);
 }
 
 /* Those that are so, and those made of them; through integrals or not */
@@ -105,7 +126,7 @@ static void find_gains(const struct expansion *x, const bool *depends, const boo
 	SCRATCH int *operand = NULL;
 	bool sum = s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL;
 	bool made = sum || s->kind == SEQUENCE_QUOTIENT || s->kind == SEQUENCE_ROOT || s->kind == SEQUENCE_POWER;
-	if (!made || !depends[index] || late[index] || is_any(late, s) || s->solved)
+	if (!made || !depends[index] || late[index] || is_any(late, s) || s->solved || s->ahead)
 		return;
 	int operands = sequence_operands(s, &operand);
 	for (int i = 0; i < operands; i++)
@@ -181,9 +202,10 @@ void find_implicit(struct expansion *x)
 {
 	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false),
 		   *solved = made_of(x, is_solution, false);
+	find_ahead(x, solved);
 	for (int i = 0; i < x->count; i++) {
 		x->sequence[i].known = !depends[i];
-		x->sequence[i].solved = solved[i] && !is_solution(&x->sequence[i]);
+		x->sequence[i].solved = solved[i] && x->sequence[i].kind != SEQUENCE_SOLUTION;
 		if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
 			find_gains(x, depends, late, i);
 	}

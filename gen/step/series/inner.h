@@ -37,7 +37,13 @@ void find_implicit(struct expansion *x);
 
 /* Its terms into s, at k times scale[k] */
 void sum_numbers(struct sequencing *w, struct sequence *s, const struct sum *sum, const mpq_t *scale);
+int single_sequence(struct sequencing *w, enum term_kind kind, int a, int b, long sign);
+int product_sequence(struct sequencing *w, int a, int b);
 mpq_t *integral_scale(const struct sequencing *w, bool times_unit);  /* 1/(k+1), or D/(k+1) */
+
+/* ---- rates.c: second derivatives of sines ---- */
+
+void shift_rates(struct sequencing *w, struct sum *sum);
 
 /* *looks: there is what no argument bounds, or what is steep: the slope inside and at the end is looked at too */
 struct unresolved *unresolved_of(const struct model *model, int *count, bool *looks);

@@ -36,7 +36,7 @@ static int *find_offsets(const struct expansion *x)
 {
 	int *offset = ARRAY(int, x->count);
 	for (int i = 0; i < x->count; i++)
-		offset[i] = x->sequence[i].kind == SEQUENCE_INTEGRAL;
+		offset[i] = x->sequence[i].kind == SEQUENCE_INTEGRAL || x->sequence[i].ahead;
 	for (bool lowered = true; lowered;) {
 		lowered = false;
 		for (int i = 0; i < x->count; i++)

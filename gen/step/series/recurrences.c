@@ -247,6 +247,18 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 
 /* ---- linear equations, M_0 factored once ---- */
 
+static tape_ref provisional_ahead(struct recurrences *r, int sequence, int k);
+
+static struct multiplier number_at(const struct recurrences *r, int k)
+{
+	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, recurrence_staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
+}
+
+static tape_ref shifted(struct recurrences *r, const struct sequence *s, int k, part_of *part)
+{
+	return recurrence_scaled(r, number_at(r, k + 1), part(r, s->a, k + 1));
+}
+
 /* The k-th where that of solutions is 0 */
 static tape_ref provisional(struct recurrences *r, int sequence, int k)
 {
@@ -258,34 +270,59 @@ static tape_ref provisional(struct recurrences *r, int sequence, int k)
 		return recurrence(r, sequence, k);
 	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
-						  : made_of(r, sequence, s, k, provisional);
+		*ref = s->kind == SEQUENCE_RATE     ? shifted(r, s, k, provisional_ahead)
+		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
+						    : made_of(r, sequence, s, k, provisional);
+	return *ref;
+}
+
+/* The k-th where the one before of solutions is 0 */
+static tape_ref provisional_ahead(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	tape_ref *ref = recurrence_place(r, r->early, sequence, k);
+	if (!s->ahead)
+		return recurrence(r, sequence, k);
+	recurrence_check_turn(r, sequence, k);
+	if (*ref == UNKNOWN)
+		*ref = s->kind == SEQUENCE_INTEGRAL ? made_of(r, sequence, s, k - 1, provisional)
+						    : made_of(r, sequence, s, k, provisional_ahead);
 	return *ref;
 }
 
 /* What the k-th of solutions adds to it: it is linear in them, with factors that the first coefficients make. */
 static tape_ref update(struct recurrences *r, int sequence, int k);
 
-static tape_ref update_times(struct recurrences *r, int sequence, int k, struct multiplier factor, int other)
+static tape_ref update_times(struct recurrences *r, int sequence, int k, struct multiplier factor, int other,
+			     part_of *change_of)
 {
-	tape_ref change = update(r, sequence, k);
+	tape_ref change = change_of(r, sequence, k);
 	return change == TAPE_NONE ? change : newest(r, change, factor, other);
 }
 
-static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, int k)
+static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, int k, part_of *change_of)
 {
 	struct list sum = { 0 };
 	for (int i = 0; i < s->terms; i++) {
 		const struct sequence_term *term = &s->term[i];
 		struct multiplier factor = recurrence_factor_at(r, term, k);
 		if (term->kind == TERM_SEQUENCE)
-			add(&sum, recurrence_scaled(r, factor, update(r, term->a, k)));
+			add(&sum, recurrence_scaled(r, factor, change_of(r, term->a, k)));
 		if (term->kind != TERM_PRODUCT)
 			continue;
-		add(&sum, update_times(r, term->a, k, factor, term->b));
-		add(&sum, update_times(r, term->b, k, factor, term->a));
+		add(&sum, update_times(r, term->a, k, factor, term->b, change_of));
+		add(&sum, update_times(r, term->b, k, factor, term->a, change_of));
 	}
 	return recurrence_chain(r->t, &sum);
+}
+
+/* What the one before of solutions adds to the k-th */
+static tape_ref update_ahead(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	if (!s->ahead)
+		return TAPE_NONE;
+	return s->kind == SEQUENCE_INTEGRAL ? update_of_sum(r, s, k - 1, update) : update_of_sum(r, s, k, update_ahead);
 }
 
 static tape_ref update(struct recurrences *r, int sequence, int k)
@@ -299,8 +336,9 @@ static tape_ref update(struct recurrences *r, int sequence, int k)
 	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
 		*ref = s->kind == SEQUENCE_QUOTIENT ? over(r, sequence, update(r, s->a, k))
+		       : s->kind == SEQUENCE_RATE   ? shifted(r, s, k, update_ahead)
 		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
-						    : update_of_sum(r, s, k);
+						    : update_of_sum(r, s, k, update);
 	return *ref;
 }
 
@@ -514,16 +552,11 @@ static bool is_constant_sequence(struct recurrences *r, int sequence)
 	return sequence == NONE || recurrence(r, sequence, 1) == TAPE_NONE;
 }
 
-static struct multiplier number_at(const struct recurrences *r, int k)
-{
-	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, recurrence_staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
-}
-
 static tape_ref made(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
 	const bool integral = s->kind == SEQUENCE_INTEGRAL;
 	if (s->kind == SEQUENCE_RATE)
-		return recurrence_scaled(r, number_at(r, k + 1), recurrence(r, s->a, k + 1));
+		return shifted(r, s, k, recurrence);
 	if (s->kind == SEQUENCE_CHOICE && !(s->solved && k > 0))
 		return choice(r, s, k, recurrence);
 	if (s->kind == SEQUENCE_SOLUTION)
@@ -532,6 +565,8 @@ static tape_ref made(struct recurrences *r, int sequence, const struct sequence 
 		return first(r, s);
 	if (integral && s->state == NONE && is_constant_sequence(r, s->a) && is_constant_sequence(r, s->b))
 		return TAPE_NONE;
+	if (s->ahead && !integral && k > 1)
+		return plus(r->t, provisional_ahead(r, sequence, k), update_ahead(r, sequence, k));
 	if (s->solved && k > 0)
 		return plus(r->t, provisional(r, sequence, k), update(r, sequence, k));
 	return s->gains && k > integral ? joined(r, sequence, s, k - integral)

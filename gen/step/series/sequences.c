@@ -3,13 +3,6 @@
  * Walther 2008, chapter 13. */
 #include "inner.h"
 
-int new_sequence(struct sequencing *w, struct sequence sequence)
-{
-	struct expansion *x = w->x;
-	*MORE(x->sequence, x->count) = sequence;
-	return x->count - 1;
-}
-
 /* ---- sums ---- */
 
 static void add_forcing(const struct sequencing *w, struct sum *sum, const struct basis *basis, mpq_srcptr factor)
@@ -69,18 +62,11 @@ void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form
 	}
 }
 
-int sum_sequence(struct sequencing *w, const struct sum *sum)
-{
-	struct sequence s = { .kind = SEQUENCE_SUM, .state = NONE, .a = NONE, .b = NONE };
-	RATIONALS *scale = plain_scale(w);
-	sum_numbers(w, &s, sum, scale);
-	return new_sequence(w, s);
-}
-
 /* ---- operands ---- */
 
-int sequence_of_sum(struct sequencing *w, const struct sum *sum)
+int sequence_of_sum(struct sequencing *w, struct sum *sum)
 {
+	shift_rates(w, sum);
 	const struct key *key = sum->key;
 	bool plain = sum->keys == 1 && key->kind == TERM_SEQUENCE && mpq_cmp_ui(key->factor, 1, 1) == 0;
 	return plain ? key->a : sum_sequence(w, sum);
@@ -99,26 +85,6 @@ int sequence_of_form(struct sequencing *w, const struct form *form)
 	w->operand[w->operands].form = form;
 	w->operand[w->operands++].sequence = made;
 	return made;
-}
-
-/* A sum of one term */
-static int single_sequence(struct sequencing *w, enum term_kind kind, int a, int b, long sign)
-{
-	struct sum sum = { 0 };
-	RATIONAL factor = ZERO;
-	mpq_set_si(factor, sign, 1);
-	sum_add(&sum, kind, a, b, factor);
-	return sum_sequence(w, &sum);
-}
-
-int minus_sequence(struct sequencing *w, int a)
-{
-	return single_sequence(w, TERM_SEQUENCE, a, 0, -1);
-}
-
-static int product_sequence(struct sequencing *w, int a, int b)
-{
-	return single_sequence(w, TERM_PRODUCT, a < b ? a : b, a < b ? b : a, 1);
 }
 
 static int power_sequence(struct sequencing *w, int base, unsigned n)
@@ -562,8 +528,10 @@ static int solution_sequences(struct sequencing *w, const struct atom *a)
 		e->right[i] = entry_sequence(w, system.f[i]);
 	for (int i = 0; i < n * n; i++)
 		e->matrix[i] = entry_sequence(w, system.M[i]);
+	w->solving = true;
 	for (int i = 0; i < n; i++)
 		e->residual[i] = a->written ? sequence_of_form(w, a->written->residual[i]) : residual_of_row(w, e, i);
+	w->solving = false;
 	return e->first;
 }
 

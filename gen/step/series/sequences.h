@@ -57,6 +57,8 @@ struct sequence {
 	int top;                    /* the last that something reads and that is not 0; -1: none is read */
 	bool known;                 /* it depends on time and inputs alone */
 	bool solved;                /* its k-th depends on the k-th of a solution */
+	bool shifts;                /* a rate of what is ahead, of which a solution is made */
+	bool ahead;                 /* such a rate reads it: its (k+1)-th depends on the k-th of a solution */
 	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their
 	 * k-th */
 	int gains;                  /* 0: not made so */
@@ -85,6 +87,7 @@ struct sequencing {                 /* what the makers of sequences share */
 	mpq_t unit;                 /* of time: D, h or several of them */
 	int *uses;                  /* per atom */
 	int *atom;                  /* per atom: its sequence; NONE: not made yet */
+	bool solving;               /* residuals are made */
 	int solutions;
 	struct { const struct atom *atom; int first; } *solution;
 	int *highest;               /* per coordinate: the solution that its highest derivative is; NONE */
@@ -96,13 +99,14 @@ mpq_t *plain_scale(const struct sequencing *w);             /* 1 */
 /* of a state, whose force changes from segment to segment: in a table */
 void add_changing_loads(struct sequencing *w, struct sequence *s, int state, const mpq_t *scale);
 
-/* ---- sequences.c: forms to sums, atoms to recurrences ---- */
-
 int  new_sequence(struct sequencing *w, struct sequence sequence);
 int  sum_sequence(struct sequencing *w, const struct sum *sum);
-int  sequence_of_sum(struct sequencing *w, const struct sum *sum);  /* of a single one itself */
-int  sequence_of_form(struct sequencing *w, const struct form *form);
 int  minus_sequence(struct sequencing *w, int a);
+
+/* ---- sequences.c: forms to sums, atoms to recurrences ---- */
+
+int  sequence_of_sum(struct sequencing *w, struct sum *sum);  /* of a single one itself */
+int  sequence_of_form(struct sequencing *w, const struct form *form);
 int  positive_sequence(struct sequencing *w, const struct form *form, int a);  /* or else 0: the state chooses */
 /* sum += scale form; leaves the statement at what has no series */
 void sum_add_form(struct sequencing *w, struct sum *sum, const struct form *form, mpq_srcptr scale);

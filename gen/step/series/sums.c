@@ -159,6 +159,43 @@ mpq_t *integral_scale(const struct sequencing *w, bool times_unit)
 	return scale;
 }
 
+/* ---- as sequences ---- */
+
+int new_sequence(struct sequencing *w, struct sequence sequence)
+{
+	struct expansion *x = w->x;
+	*MORE(x->sequence, x->count) = sequence;
+	return x->count - 1;
+}
+
+int sum_sequence(struct sequencing *w, const struct sum *sum)
+{
+	struct sequence s = { .kind = SEQUENCE_SUM, .state = NONE, .a = NONE, .b = NONE };
+	RATIONALS *scale = plain_scale(w);
+	sum_numbers(w, &s, sum, scale);
+	return new_sequence(w, s);
+}
+
+/* A sum of one term */
+int single_sequence(struct sequencing *w, enum term_kind kind, int a, int b, long sign)
+{
+	struct sum sum = { 0 };
+	RATIONAL factor = ZERO;
+	mpq_set_si(factor, sign, 1);
+	sum_add(&sum, kind, a, b, factor);
+	return sum_sequence(w, &sum);
+}
+
+int minus_sequence(struct sequencing *w, int a)
+{
+	return single_sequence(w, TERM_SEQUENCE, a, 0, -1);
+}
+
+int product_sequence(struct sequencing *w, int a, int b)
+{
+	return single_sequence(w, TERM_PRODUCT, a < b ? a : b, a < b ? b : a, 1);
+}
+
 /* ---- loads that change their formula ---- */
 
 /* Loads whose force changes in time have their factors in a table. */
