@@ -29,6 +29,9 @@
 #include "equations.h"
 
 typedef __float128 quad;
+#define EXPONENTIAL_REAL quad
+#include "taylor_exponential.h"
+
 enum { MOST = 64 };                 /* entries of a state, load states included */
 
 /* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
@@ -39,52 +42,11 @@ static quad exactly(double x)
 
 /* ---- linear: closed form ---- */
 
-static void product(int n, const quad *a, const quad *b, quad *c)
-{
-	for (int i = 0; i < n; i++)
-		for (int j = 0; j < n; j++) {
-			quad sum = 0;
-			for (int k = 0; k < n; k++)
-				sum += a[i * n + k] * b[k * n + j];
-			c[i * n + j] = sum;
-		}
-}
-
-static quad norm_of(int n, const quad *a)
-{
-	quad most = 0;
-	for (int i = 0; i < n; i++) {
-		quad sum = 0;
-		for (int j = 0; j < n; j++)
-			sum += fabsq(a[i * n + j]);
-		most = sum > most ? sum : most;
-	}
-	return most;
-}
-
 struct flow { int size; quad A[MOST * MOST]; };
 
-/* Scaling and squaring; Taylor terms until they no longer matter */
 void quad_exponential(int n, const quad *A, quad tau, quad *E)
 {
-	enum { TERMS = 36 };
-	static quad x[MOST * MOST], term[MOST * MOST], next[MOST * MOST];
-	int halvings = 0;
-	for (quad size = norm_of(n, A) * fabsq(tau); size > 0.25Q; size /= 2)
-		halvings++;
-	for (int i = 0; i < n * n; i++) {
-		x[i] = ldexpq(A[i] * tau, -halvings);
-		E[i] = term[i] = i % (n + 1) == 0;
-	}
-	for (int k = 1; k <= TERMS; k++) {
-		product(n, term, x, next);
-		for (int i = 0; i < n * n; i++)
-			E[i] += term[i] = next[i] / k;
-	}
-	for (int k = 0; k < halvings; k++) {
-		product(n, E, E, next);
-		memcpy(E, next, (size_t)(n * n) * sizeof *E);
-	}
+	taylor_exponential(n, A, tau, E);
 }
 
 /* y' = A y + b0 z0 + b1 z1 + b2 z2, z = 1, cos w t, sin w t */
