@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* e^{A tau} in the type EXPONENTIAL_REAL, which who includes it names: Taylor's series of a 2^-k part, by Horner's rule,
- * squared k times. A, E: n x n, row-major. */
+/* e^{A tau} in the type EXPONENTIAL_REAL, which who includes it names: Taylor's series of a 2^-k part, by Horner's
+ * rule, squared k times. A, E: n x n, row-major. */
 #include <stdlib.h>
 #include <string.h>
 
