@@ -20,26 +20,9 @@ if ! boards_installed; then
     echo "1..0 # SKIP no $arm-gcc or no qemu-system-arm"
     exit 0
 fi
-work=$(mktemp -d "${TMPDIR:-/tmp}/example.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
+. "${0%/*}/../tap.sh"
 cp "$root/doc/firmware/main.c" "$root/doc/firmware/board.h" "$root/doc/firmware/cycles.h" \
-    "$root/doc/firmware/Makefile" "$work"
-cd "$work" || exit 99
-count=0
-failed=0
-
-result() {          # result STATUS TITLE: what was wrong is in `log`
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        head -n 30 log | cut -c 1-200 | sed 's/^/# /'
-    fi
-}
-
+    "$root/doc/firmware/Makefile" .
 . "$root/tests/sparing.sh"
 mkdir bin
 for name in m4f m3 m0; do
@@ -121,5 +104,4 @@ board m0
 $arm-gcc $optimize $cpu -c cycles.c 2>&1 | grep -q 'error.*no cycle counter'
 result $? 'm0: it says that there is no such counter'
 
-echo "1..$count"
-exit $failed
+tap_end

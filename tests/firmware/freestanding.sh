@@ -21,22 +21,8 @@ if ! command -v $arm-gcc >/dev/null 2>&1; then
 fi
 board "$name"
 optimize_less
-work=$(mktemp -d "${TMPDIR:-/tmp}/freestanding.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-count=0
-failed=0
-
-result() {          # result STATUS TITLE: what was wrong is in $work/log
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $name: $2"
-    else
-        echo "not ok $count - $name: $2"
-        failed=1
-        head -n 12 "$work/log" | cut -c 1-200 | sed 's/^/# /'
-    fi
-}
+from=$PWD
+. "${0%/*}/../tap.sh"
 
 # shellcheck disable=SC2086
 library() {         # library FILE: what it defines
@@ -56,7 +42,7 @@ builds() {
         $arm-gcc $optimize -ffreestanding -nostdlib $warnings $promotion $cpu -fstack-usage -fcallgraph-info=su \
         -I"$root/runtime" -I"$firmware" \
         -c "$1" -o "$2.o") >"$work/log" 2>&1
-    result $? "$2 builds without a warning"
+    result $? "$name: $2 builds without a warning"
     # The calls as written, which are the same for every board: optimization makes loops of some that are recursive.
     # Those of float are those of double, but for the runtime, whose text is another: of models with LONG=1.
     # shellcheck disable=SC2086
@@ -86,7 +72,7 @@ builds() {
         fi
     } >"$work/log"
     [ ! -s "$work/log" ]
-    result $? "$2: calls what it may, keeps no variables, stack known$([ "$3" = double ] || echo ', no double')"
+    result $? "$name: $2: calls what it may, keeps no variables, stack known$([ "$3" = double ] || echo ', no double')"
 }
 
 for f in "$root"/runtime/*.c; do
@@ -96,7 +82,7 @@ for f in "$root"/runtime/*.c; do
     [ -z "${LONG:-}" ] && [ "$name" != m0 ] && [ $real = double ] || builds "$root/runtime/$f.c" "$f" $real
 done
 for source; do
-    case $source in /*) ;; *) source=$PWD/$source ;; esac
+    case $source in /*) ;; *) source=$from/$source ;; esac
     model=${source##*/}
     model=${model%.c}
     builds "$source" "$model" "${model##*_}"
@@ -109,7 +95,6 @@ cat "$work"/*.ci | sed -n 's/^edge: { sourcename: "\([^"]*\)" targetname: "\([^"
 tsort "$work/calls" 2>"$work/log" >/dev/null
 awk '$1 == $2 { print "recursive: " $1 }' "$work/calls" >>"$work/log"
 [ ! -s "$work/log" ] && [ -s "$work/calls" ]
-result $? "$(wc -l <"$work/calls") calls, none of them recursive"
+result $? "$name: $(wc -l <"$work/calls") calls, none of them recursive"
 
-echo "1..$count"
-exit $failed
+tap_end

@@ -8,42 +8,24 @@
 set -u
 runtime=$1
 shift
-
-work=$(mktemp -d "${TMPDIR:-/tmp}/no_double.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-
-count=0
-failed=0
-
-# result STATUS NAME: a line of TAP; what was found is in $work/found
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' "$work/found" | head -n 12
-    fi
-}
+case $runtime in /*) ;; *) runtime=$PWD/$runtime ;; esac
+. "${0%/*}/../tap.sh"
 
 arithmetic='(add|sub|mul|div|max|min|sqrt|u?comi|and|andn|xor|f?n?m(add|sub)[0-9]*|cmp[a-z]*)'
 conversion='cvt[a-z0-9]*[sp]d[a-z0-9]*'
 stack='f(ld|ild|st|stp|add|mul|div|sub)[a-z]*'
 
-# doubles COMPILER LEVEL PIECE: are there instructions for doubles in runtime/PIECE.c?  They are in $work/found.
+# doubles COMPILER LEVEL PIECE: are there instructions for doubles in runtime/PIECE.c?  They are in log.
 doubles() {
-    "$1" -std=c99 "$2" -c "$runtime/$3.c" -o "$work/piece.o" 2>"$work/found" || return 0
-    objdump -d "$work/piece.o" | grep -w -E "v?($arithmetic[sp]d|$conversion)|$stack" >"$work/found"
+    "$1" -std=c99 "$2" -c "$runtime/$3.c" -o piece.o 2>log || return 0
+    objdump -d piece.o | grep -w -E "v?($arithmetic[sp]d|$conversion)|$stack" >log
 }
 
 for compiler; do
     case $(command -v "$compiler" >/dev/null 2>&1 && command -v objdump >/dev/null 2>&1 && "$compiler" -dumpmachine) in
         x86_64*) ;;
         *)
-            count=$((count + 1))
-            echo "ok $count - $compiler # SKIP not installed, or not for x86-64"
+            skip "$compiler" 'not installed, or not for x86-64'
             continue
             ;;
     esac
@@ -52,7 +34,7 @@ for compiler; do
     case $compiler in *clang*) levels='-O2 -Os' ;; esac
     [ -z "${LONG:-}" ] || levels='-O0 -O2 -Os'
     for level in $levels; do
-        for piece in turns growth series power until apply crossings retune rate root dense; do
+        for piece in phases envelope series power until apply crossings retune rate root dense; do
             ! doubles "$compiler" "$level" "${piece}f"
             result $? "${piece}f.c, $compiler $level"
         done
@@ -60,5 +42,4 @@ for compiler; do
     doubles "$compiler" -O2 series
     result $? "series.c, $compiler: those of doubles are found"
 done
-echo "1..$count"
-exit $failed
+tap_end
