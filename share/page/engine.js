@@ -130,6 +130,13 @@ class History {
   when(k) { return this.time[k % this.room]; }
 }
 
+/* Exchanges two numbers of an array; what is written [a, b] = [b, a] makes an array each time. */
+function exchange(list, i, j) {
+  const kept = list[i];
+  list[i] = list[j];
+  list[j] = kept;
+}
+
 /* In place, of 2^m numbers: the sums over e^{-2 pi i jk/n}. */
 function fourier(re, im) {
   const n = re.length;
@@ -138,8 +145,8 @@ function fourier(re, im) {
     for (; j & bit; bit >>= 1) j ^= bit;
     j ^= bit;
     if (i < j) {
-      [re[i], re[j]] = [re[j], re[i]];
-      [im[i], im[j]] = [im[j], im[i]];
+      exchange(re, i, j);
+      exchange(im, i, j);
     }
   }
   for (let size = 2; size <= n; size *= 2)
@@ -248,9 +255,9 @@ class StepResponse {
       for (let i = m; i < n; i++)
         if (Math.abs(a[i * n + m - 1]) > Math.abs(a[pivot * n + m - 1])) pivot = i;
       if (pivot !== m) {
-        for (let j = 0; j < n; j++) [a[m * n + j], a[pivot * n + j]] = [a[pivot * n + j], a[m * n + j]];
-        for (let i = 0; i < n; i++) [a[i * n + m], a[i * n + pivot]] = [a[i * n + pivot], a[i * n + m]];
-        for (const b of [...columns, reads]) [b[m], b[pivot]] = [b[pivot], b[m]];
+        for (let j = 0; j < n; j++) exchange(a, m * n + j, pivot * n + j);
+        for (let i = 0; i < n; i++) exchange(a, i * n + m, i * n + pivot);
+        for (const b of [...columns, reads]) exchange(b, m, pivot);
       }
       for (let i = m + 1; i < n && a[m * n + m - 1] !== 0; i++) {
         const by = a[i * n + m - 1] / a[m * n + m - 1];
@@ -290,19 +297,19 @@ class StepResponse {
       sum += this.reads[k] * x[k];
       other += this.reads[k] * xi[k];
     }
-    return Math.hypot(sum, other);
+    return Math.sqrt(sum * sum + other * other);
   }
 
   /* Row k + 1 less a multiple of row k, the larger of the two above */
   eliminate(k) {
     const n = this.engine.states, {re, im, x, xi} = this, a = k * n, b = a + n;
-    if (Math.hypot(re[b + k], im[b + k]) > Math.hypot(re[a + k], im[a + k])) {
+    if (re[b + k] * re[b + k] + im[b + k] * im[b + k] > re[a + k] * re[a + k] + im[a + k] * im[a + k]) {
       for (let j = k; j < n; j++) {
-        [re[a + j], re[b + j]] = [re[b + j], re[a + j]];
-        [im[a + j], im[b + j]] = [im[b + j], im[a + j]];
+        exchange(re, a + j, b + j);
+        exchange(im, a + j, b + j);
       }
-      [x[k], x[k + 1]] = [x[k + 1], x[k]];
-      [xi[k], xi[k + 1]] = [xi[k + 1], xi[k]];
+      exchange(x, k, k + 1);
+      exchange(xi, k, k + 1);
     }
     const p = re[a + k], q = im[a + k], size = p * p + q * q;
     if (size === 0) return;

@@ -157,14 +157,15 @@ class Logarithms {
     for (let k = 0; k < count; k++) if (amplitude[k] > most && amplitude[k] < Infinity) most = amplitude[k];
     const first = Math.log10(frequency[0]), last = Math.log10(frequency[count - 1]), top = Math.ceil(Math.log10(most));
     if (!(most > 0) || !(last > first)) return;
-    const x = (f) => (Math.log10(f) - first) / (last - first) * wide;
-    const y = (a) => Math.min(tall, (top - Math.log10(a + 1e-300)) / this.decades * tall);
+    const across = wide / (last - first), down = tall / this.decades;
     g.fillStyle = p.faint;
-    for (let d = Math.ceil(first); d < last; d++) g.fillRect(x(10 ** d), 0, 1, tall);
+    for (let d = Math.ceil(first); d < last; d++) g.fillRect((d - first) * across, 0, 1, tall);
     for (let d = 1; d < this.decades; d++) g.fillRect(0, d / this.decades * tall, wide, 1);
     g.strokeStyle = colour;
     g.beginPath();
-    for (let k = 0; k < count; k++) g.lineTo(x(frequency[k]), y(amplitude[k]));
+    for (let k = 0; k < count; k++)
+      g.lineTo((Math.log10(frequency[k]) - first) * across,
+               Math.min(tall, (top - Math.log10(amplitude[k] + 1e-300)) * down));
     g.stroke();
     g.fillStyle = p.ink;
     g.fillText(text(frequency[0]) + " Hz", 4, tall + 12);
@@ -196,7 +197,7 @@ class Spectrum extends Logarithms {
     }
     fourier(this.re, this.im);
     for (let k = 0; k < n / 2; k++) {
-      this.re[k] = Math.hypot(this.re[k], this.im[k]) / c.factor;
+      this.re[k] = Math.sqrt(this.re[k] * this.re[k] + this.im[k] * this.im[k]) / c.factor;
       this.frequency[k] = k / (n * this.page.model.h * h.stride);
     }
     return n / 2;

@@ -33,7 +33,7 @@ class Sketch {
   }
 
   draw() {
-    const g = this.page.fit(this.canvas, 300);
+    const g = this.page.fit(this.canvas, this.canvas.clientWidth > 380 ? 370 : 260);
     g.strokeStyle = this.page.ink;
     g.fillStyle = this.page.paper;
     if (this.model.draw.length) this.drawPlaces(g);
@@ -106,7 +106,7 @@ class Sketch {
 
   /* A spring is a zigzag, a damper a piston in its cylinder, friction a hatched bar, a stop a gap with a wall. */
   drawLink(g, what, x, y, ex, ey) {
-    const length = Math.hypot(ex - x, ey - y), lines = LINES[what];
+    const length = Math.sqrt((ex - x) * (ex - x) + (ey - y) * (ey - y)), lines = LINES[what];
     g.save();
     g.translate(x, y);
     g.rotate(Math.atan2(ey - y, ex - x));

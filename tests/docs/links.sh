@@ -84,6 +84,11 @@ for spec in "$root"/models/*.spec; do
 	fi
 done
 for picture in "$root"/doc/gallery/*; do
+	case $picture in
+		*/pages_*.webp)
+			grep -qF "](gallery/${picture##*/})" "$root/doc/page.md" || echo "$picture: not in page.md" >>log
+			continue ;;
+	esac
 	[ -f "$root/models/$(basename "$picture" .svg).spec" ] || echo "$picture: of no model" >>log
 done
 sed -n '/^## /,$p' "$root/doc/gallery.md" | grep -o '`[a-z0-9_]*`' | tr -d '`' | sort -u >named
