@@ -86,7 +86,7 @@ done
 for picture in "$root"/doc/gallery/*; do
 	case $picture in
 		*/pages_*.webp)
-			grep -qF "](gallery/${picture##*/})" "$root/doc/page.md" || echo "$picture: not in page.md" >>log
+			grep -qF "](gallery/${picture##*/})" "$root/doc/page.md" || echo "$picture: in no page" >>log
 			continue ;;
 	esac
 	[ -f "$root/models/$(basename "$picture" .svg).spec" ] || echo "$picture: of no model" >>log
