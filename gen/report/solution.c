@@ -56,6 +56,8 @@ static void check_peaks_of(const struct model *model)
 
 /* ---- through crossings ---- */
 
+enum { FEWEST_BITS = 192, MOST_BITS = 6144 };
+
 struct printing {
 	FILE *to;
 	const struct model *model;
@@ -139,9 +141,20 @@ static bool print_with(struct printing *p, int precision)
 	return reported;
 }
 
+/* The bits that what was lost so far says all rows take: widths double at events, so that bits go with the time. Where
+ * more of them brought no row, twice as many. */
+static int more_bits(const struct printing *p, int bits, unsigned long rows_before, int bits_before)
+{
+	if (bits_before == 0 || p->rows <= rows_before)
+		return 2 * bits;
+	const double per_row = (bits - bits_before) / (double)(p->rows - rows_before);
+	const double all = bits + 1.05 * per_row * (double)(p->last - p->rows) + 16;
+	return (int)fmax(1.25 * bits, fmin(all, fmax(MOST_BITS, 2 * bits)));
+}
+
 static void print_trajectory(FILE *to, const struct model *model, unsigned long last)
 {
-	enum { FEWEST_BITS = 192, MOST_BITS = 6144, EQUAL = 3 };
+	enum { EQUAL = 3 };
 	struct printing p = { .to = to, .model = model, .last = last,
 			      .largest = ARRAY(double, model->outputs) };
 	const char *before = NULL;
@@ -150,10 +163,15 @@ static void print_trajectory(FILE *to, const struct model *model, unsigned long 
 		fprintf(to, ",%s", model->output[j].name);
 	fputc('\n', to);
 	int equal = 1;                  /* what more bits do not tell apart, may be one */
-	for (int bits = FEWEST_BITS; !print_with(&p, bits); bits *= 2) {
+	int bits_before = 0, next;
+	unsigned long rows_before = 0;
+	for (int bits = FEWEST_BITS; !print_with(&p, bits); bits = next) {
+		next = more_bits(&p, bits, rows_before, bits_before);
+		bits_before = bits;
+		rows_before = p.rows;
 		equal = before && strcmp(before, p.why) == 0 ? equal + 1 : 1;
 		before = p.why;
-		if (2 * bits > MOST_BITS || equal == EQUAL) {
+		if (next > MOST_BITS || equal == EQUAL) {
 			progress_end();
 			error(model->request.end_at, "until then it is known: a shorter --solution prints it", "%s",
 			      p.why);
