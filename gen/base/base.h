@@ -72,7 +72,7 @@ enum {
 	LIMIT_HELD_STATES = 64,     /* and whose discrete state space is */
 	LIMIT_FREQUENCIES = 100000, /* rows of --response */
 	LIMIT_SERIES = 5000000,     /* multiplications of a Taylor series */
-	LIMIT_COLLOCATED = 40,      /* coordinates of a collocation, whose matrices stand on the stack */
+	LIMIT_COLLOCATED = 128,      /* coordinates of a collocation, whose matrices stand on the stack */
 	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */
 	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
