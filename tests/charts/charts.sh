@@ -5,39 +5,21 @@
 set -u
 build=$1 root=$2
 here=$root/tests/charts
-csv=$root/bench/charts/csv.awk
-work=$(mktemp -d "${TMPDIR:-/tmp}/charts.XXXXXX") || exit 99
-trap 'rm -rf "$work"' EXIT
-trap 'exit 99' HUP INT TERM
-cd "$root" || exit 99
-LC_ALL=C
-export LC_ALL
+charts=$root/bench/charts
+csv=$charts/csv.awk
+. "$root/tests/tap.sh"
 out=$work/out
 log=$work/log
-count=0
-failed=0
 
-# result STATUS NAME: a line of TAP; what there is to say is in log
-result() {
-    count=$((count + 1))
-    if [ "$1" -eq 0 ]; then
-        echo "ok $count - $2"
-    else
-        echo "not ok $count - $2"
-        failed=1
-        sed 's/^/# /' "$log" | tail -n 20
-    fi
-}
-
-sh bench/charts/charts.sh "$build" "$out" --quick >"$log" 2>&1
+(cd "$root" && exec sh bench/charts/charts.sh "$build" "$out" --quick) >"$log" 2>&1
 result $? "charts.sh --quick"
 
 # ---- the tables ----
 
 while read -r name head; do
-    sed -n 1p "$out/$name.csv" >"$work/head" 2>&1
-    { printf 'found    '; cat "$work/head"; echo "expected $head"; } >"$log"
-    [ "$(cat "$work/head")" = "$head" ] && [ "$(wc -l <"$out/$name.csv")" -gt 1 ]
+    sed -n 1p "$out/$name.csv" >head 2>&1
+    { printf 'found    '; cat head; echo "expected $head"; } >"$log"
+    [ "$(cat head)" = "$head" ] && [ "$(wc -l <"$out/$name.csv")" -gt 1 ]
     result $? "$name.csv: its columns, and rows"
 done <"$here/tables.list"
 
@@ -50,10 +32,10 @@ awk -v list="$here/methods.list" -f "$csv" -f "$here/hard.awk" "$out/hard.csv" >
 result $? "hard.csv: every method on every case, each failure with its word"
 awk -f "$csv" -f "$here/orders.awk" "$out/convergence_orders.csv" >"$log" 2>&1
 result $? "convergence_orders.csv: orders within 0.15"
-sh bench/charts/table.sh fold -v by=model,method,family,setting_kind,unit_s -v lists=setting,largest,ns_median \
-    "$here/break_even/precision.csv" >"$work/folded.csv" 2>&1
-sh bench/charts/table.sh after "$here/break_even/generation.csv" "$work/folded.csv" >"$work/break_even.csv" 2>&1
-diff "$work/break_even.csv" "$here/break_even/expect.csv" >"$log" 2>&1
+sh "$charts/table.sh" fold -v by=model,method,family,setting_kind,unit_s -v lists=setting,largest,ns_median \
+    "$here/break_even/precision.csv" >folded.csv 2>&1
+sh "$charts/table.sh" after "$here/break_even/generation.csv" folded.csv >break_even.csv 2>&1
+diff break_even.csv "$here/break_even/expect.csv" >"$log" 2>&1
 result $? "break-even of given times: as worked out by hand"
 awk -f "$csv" -f "$here/break_even/check.awk" "$out/break_even_raw.csv" >"$log" 2>&1
 result $? "break_even_raw.csv: like beside like, never where it never pays"
@@ -100,23 +82,22 @@ result $? "pages: every picture with its text and caption, every table, nothing 
 
 # ---- the same again ----
 
-mkdir "$work/again"
+mkdir again
 for name in quality convergence hard_raw; do
     case $name in
-        quality) "$build/bench/charts/quality" --quick "$work/again" >"$log" 2>&1 ;;
-        *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" "$work/again" >"$log" 2>&1 ;;
+        quality) "$build/bench/charts/quality" --quick again >"$log" 2>&1 ;;
+        *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" again >"$log" 2>&1 ;;
     esac
-    cmp "$out/$name.csv" "$work/again/$name.csv" >>"$log" 2>&1
+    cmp "$out/$name.csv" "again/$name.csv" >>"$log" 2>&1
     result $? "$name.csv: the same bytes twice"
 done
 # Without the errors that the first run has kept
 rm -f "$out/variants/pendulum.errors" "$out/variants/scs.errors"
-"$build/bench/charts/precision" --quick "$out/variants" "$work/again/precision_raw.csv" pendulum scs >"$log" 2>&1 &&
-    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$work/again/precision_raw.csv" >"$work/second" &&
+"$build/bench/charts/precision" --quick "$out/variants" again/precision_raw.csv pendulum scs >"$log" 2>&1 &&
+    awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" again/precision_raw.csv >second &&
     awk -v without="^ns_" -f "$csv" -f "$here/columns.awk" "$out/precision_raw.csv" |
-        grep -e '^model' -e '^pendulum,' -e '^scs,' >"$work/first" &&
-    cmp "$work/first" "$work/second" >>"$log" 2>&1
+        grep -e '^model' -e '^pendulum,' -e '^scs,' >first &&
+    cmp first second >>"$log" 2>&1
 result $? "precision_raw.csv: the same but for times"
 
-echo "1..$count"
-exit $failed
+tap_end

@@ -15,34 +15,35 @@ NR == 1 { read_head($0, column); next }
 {
 	split("", row)
 	split_row($0, row)
-	of = row[column["case"]]; method = row[column["method"]]; error = row[column["error"]];
+	scene = row[column["case"]]; method = row[column["method"]]; error = row[column["error"]];
 	word = row[column["word"]]
-	cases[of] = 1
-	seen[of, method] = 1
-	words[of, method] = words[of, method] " " word ";"
+	cases[scene] = 1
+	seen[scene, method] = 1
+	words[scene, method] = words[scene, method] " " word ";"
 	grade = error + 0 < 1e-3 ? "ok" : error + 0 < 0.1 ? "poor" : "wrong"
 	if (error == "failed" ? word !~ /^(diverged|gave up|refused|linear only|as exact)$/ : \
 	    !is_number(error) || word != grade) {
-		print of ", " method ": error " error ", word " word
+		print scene ", " method ": error " error ", word " word
 		bad = 1
 	}
 	if (method == "exact" && word != "refused") {
-		limit = of == "grazing contact" ? 1e-7 : of ~ /^stiff/ ? 1e-8 : 1e-9
+		limit = scene == "grazing contact" ? 1e-7 : scene ~ /^stiff/ ? 1e-8 : 1e-9
 		if (error + 0 > limit || error == "failed") {
-			print of ", exact: found " error ", expected 0, tolerance " limit
+			print scene ", exact: found " error ", expected 0, tolerance " limit
 			bad = 1
 		}
 	}
 }
-function known(of, method, pattern) {
-	if (words[of, method] !~ pattern) { print of ", " method ": found" words[of, method] " expected " pattern;
+function known(scene, method, pattern) {
+	if (words[scene, method] !~ pattern) {
+		print scene ", " method ": found" words[scene, method] " expected " pattern;
 		bad = 1 }
 }
 END {
-	for (of in cases) {
+	for (scene in cases) {
 		count++
 		for (method in wanted)
-			if (!((of, method) in seen)) { print of ": no " method; bad = 1 }
+			if (!((scene, method) in seen)) { print scene ": no " method; bad = 1 }
 	}
 	if (count != 12) { print count + 0 " cases, expected 12"; bad = 1 }
 	known("stiff spring", "explicit Euler", "diverged; diverged")
