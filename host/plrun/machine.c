@@ -280,6 +280,15 @@ void instance_run(struct instance *i, size_t n, const double *u, double *out)
 		out[k] = (double)i->narrow[inputs + k];
 }
 
+void instance_jump(struct instance *i, uint64_t n)
+{
+	const struct machine *m = i->machine;
+	if (m->single)
+		m->modelf->jump(i->state, n);
+	else
+		m->model->jump(i->state, n);
+}
+
 static void own_out(struct instance *i, double *out)
 {
 	const struct machine *m = i->machine;

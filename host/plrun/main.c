@@ -150,6 +150,7 @@ static int run_once(struct start *s)
 		w.rows = rows_new(to, m, job.h, every, o->raw);
 	if (o->plot && !o->window)
 		w.picture = picture_new(m, job.h, every);
+	job.apart = w.stats || w.psd ? 0 : every;
 	error = run_steps(&job, watch_all, &w);
 	progress_end();
 	if (w.rows)

@@ -291,6 +291,7 @@ void instance_hold(struct instance *i, const double *u);
 void instance_step(struct instance *i, const double *u);
 /* n steps, of u a row for each, of out too; n <= STEPS_AT_ONCE, and outputs are the model's own */
 void instance_run(struct instance *i, size_t n, const double *u, double *out);
+void instance_jump(struct instance *i, uint64_t n);     /* where the model has it */
 enum { STEPS_AT_ONCE = 64 };                    /* so that their rows stay in a cache */
 void instance_out(struct instance *i, double *out);
 void instance_get(struct instance *i, double *y);
@@ -381,6 +382,7 @@ struct job {
 	bool resampled, reported;               /* reported: progress is */
 	bool tuned;                             /* by run_steps: the model has taken the params */
 	uint64_t steps;                         /* these two by plan_run */
+	uint64_t apart;                         /* of the rows that are looked at; 0: all are */
 	uint64_t *crossed;                      /* NULL, or where the number of breakpoints crossed goes */
 };
 char *plan_run(struct job *job);                        /* NULL, or why not */

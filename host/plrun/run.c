@@ -266,6 +266,38 @@ static char *take_block(struct course *c, uint64_t k, size_t n, const double *u)
 	return NULL;
 }
 
+/* Beyond so many steps a jump costs less than they do */
+static bool jumps(const struct course *c)
+{
+	enum { A_STATE = 1024 };
+	const struct machine *m = c->job->machine;
+	const bool has = m->single ? m->modelf->jump != NULL : m->model->jump != NULL;
+	return has && !c->s->derivatives && !c->job->record && !c->sizes.y &&
+	       c->job->apart / A_STATE >= (uint64_t)m->states + 1;
+}
+
+/* From row to row; a step at a time where something is wrong on the way */
+static char *take_jumps(struct course *c)
+{
+	const struct job *job = c->job;
+	char *error = NULL;
+	uint64_t n;
+	for (uint64_t k = 0; k < job->steps && !error; k += n) {
+		n = job->steps - k < job->apart ? job->steps - k : job->apart;
+		memcpy(c->kept, c->s->state, job->machine->size);
+		instance_jump(c->s, n);
+		if (instance_status(c->s)) {
+			memcpy(c->s->state, c->kept, job->machine->size);
+			for (uint64_t i = 1; i <= n && !error; i++)
+				error = take_step(c, k + i, NULL);
+			continue;
+		}
+		instance_out(c->s, c->out);
+		c->each(c->who, k + n, c->out);
+	}
+	return error;
+}
+
 /* Where nobody looks at more than the outputs */
 static size_t steps_at_once(const struct course *c)
 {
@@ -281,7 +313,9 @@ static char *take_steps(struct course *c, struct samples *samples)
 	size_t n;
 	instance_out(c->s, c->out);
 	c->each(c->who, 0, c->out);
-	for (uint64_t k = 1; k <= job->steps && !error; k += n) {
+	if (jumps(c))
+		error = take_jumps(c);
+	else for (uint64_t k = 1; k <= job->steps && !error; k += n) {
 		n = job->steps - k < most ? (size_t)(job->steps - k) + 1 : most;
 		const double *u = samples_rows(samples, n);
 		error = n > 1 ? take_block(c, k, n, u) : take_step(c, k, u);

@@ -38,6 +38,26 @@ run two.spec --input plain.csv --real float --every 0.03 --show y | sed '1d; y/,
 	awk '{ d = $2 - $4 } $1 != $3 || d * d > 1e-14 * $2 * $2 { print; bad = 1 } END { exit bad || NR != 27 }' >>log
 result $? '... of a model in float as doubles'
 
+cat >free.spec <<'X'
+model swing
+coord x
+x'' + x = 0
+init x = 1
+step 0.001
+X
+run free.spec 100000 --every 5 >jumps.csv
+awk -F, 'NR > 1 { d = $2 - cos($1); most = d * d > most ? d * d : most } END { exit !(NR == 20002 && most < 1e-20) }' jumps.csv
+result $? '1e8 steps by jumps: cos t within 1e-10'
+run free.spec 1001 --every 7 >jumps.csv
+run free.spec 1001 --every 1 | awk 'NR == 1 || NR % 7 == 2' | paste -d, - jumps.csv |
+	awk -F, 'NR > 1 { d = $2 - $5; bad += $1 != $4 || d * d > 1e-20 } END { exit bad || NR != 145 }'
+result $? '... and the rows of steps'
+sed "s/^x''.*/x'' = 1e9*x/; s/^step.*/step 0.01/" free.spec >grows.spec
+run grows.spec 100 --every 50 >rows.csv
+[ $? -eq 1 ] && cp said jumped && run grows.spec 100 >rows.csv
+[ $? -eq 1 ] && grep -q 'has left the finite numbers' said && cmp said jumped >>log
+result $? '... and the step at which a state leaves the finite numbers'
+
 awk '{ print $2 "," $3 }' numbers >bare.csv
 written 'no names: the order of the model' bare.csv
 (echo push,road; awk '{ print $3 "," $2 }' numbers) >swapped.csv
