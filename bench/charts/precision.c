@@ -90,7 +90,7 @@ struct ours {
 	const char *name, *options;
 	bool exact;                     /* else with a remainder */
 	bool series;                    /* of smooth models with few states */
-	bool modes;                     /* of large ones, with a bank of their own: specs/modes_NAME.spec */
+	bool modes;                     /* of large ones, with a bank of their own: specs/modes_beam.spec */
 	bool tolerance;                 /* settings are tolerances, not steps */
 	bool over;                      /* one expansion is over several units */
 };
@@ -227,18 +227,18 @@ static const char *file_of(const struct charted *m, const struct ours *o, const 
 
 static void list_model(const struct charted *m, bool quick)
 {
-	const char *folder = m->here ? "bench/charts/specs" : "models";
-	char word[16];
-	printf("%s.so %s/%s.spec\n", m->name, folder, m->name);
+	char word[16], spec[100], modes[100];
+	snprintf(spec, sizeof spec, "%s/%s.spec", m->here ? "bench/charts/specs" : "models", m->name);
+	snprintf(modes, sizeof modes, "bench/charts/specs/modes_beam.spec -D Om=%s", m->name + strcspn(m->name, "14"));
+	printf("%s.so %s\n", m->name, spec);
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
 		for (const char *at = ladder_of_ours(m, o, quick); next_word(&at, word);)
 			if (o->tolerance)
-				printf("%s %s/%s.spec --step %s %s --tolerance %s\n", file_of(m, o, word), folder,
-				       m->name, m->unit, o->options, word);
+				printf("%s %s --step %s %s --tolerance %s\n", file_of(m, o, word), spec, m->unit,
+				       o->options, word);
 			else
-				printf("%s %s/%s%s.spec --step %s/%s %s\n", file_of(m, o, word),
-				       o->modes ? "bench/charts/specs" : folder, o->modes ? "modes_" : "", m->name,
-				       m->unit, word, o->options);
+				printf("%s %s --step %s/%s %s\n", file_of(m, o, word), o->modes ? modes : spec, m->unit,
+				       word, o->options);
 }
 
 /* ---- the runs of one model: a row of the table each ---- */
