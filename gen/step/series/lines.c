@@ -95,7 +95,7 @@ struct lines *lines_of(const struct expansion *x, int states)
 		last = turns > last ? turns : last;
 	}
 	for (int i = 0; i < x->count; i++) {
-		if (x->sequence[i].top < 0)
+		if (x->sequence[i].top <= 0)    /* no turn makes it */
 			continue;
 		keep_operands(x, l, i);
 		deepest = l->offset[i] < deepest ? l->offset[i] : deepest;

@@ -148,15 +148,6 @@ static int slope_of(struct sequencing *w, int sine)
 	return made;
 }
 
-static int shifted(struct sequencing *w, int sequence)
-{
-	for (int i = 0; i < w->x->count; i++)
-		if (at(w, i)->kind == SEQUENCE_RATE && at(w, i)->a == sequence)
-			return i;
-	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_RATE, .state = NONE, .a = sequence, .b = NONE,
-						  .shifts = true });
-}
-
 /* The key of a sine times u''; NULL */
 static struct key *key_of_solved(const struct sequencing *w, const struct sum *sum, int sine, int rate)
 {
@@ -183,7 +174,7 @@ static int sine_of_key(const struct sequencing *w, const struct key *key)
 }
 
 /* c sin(u) u'^2 - c cos(u) u'' to -c (cos(u) u')', and with a sine and a cosine exchanged to c (sin(u) u')' */
-static void shift_key(struct sequencing *w, struct sum *sum, int index)
+static void shift_key(struct sequencing *w, struct sum *sum, int index, struct sum *slopes)
 {
 	const int sine = sine_of_key(w, &sum->key[index]), partner = sine == NONE ? NONE : partner_of(w, sine);
 	struct key *other = sine == NONE ? NULL : key_of_solved(w, sum, partner, rate_of(w, sine));
@@ -195,9 +186,8 @@ static void shift_key(struct sequencing *w, struct sum *sum, int index)
 	if (is_function(at(w, sine), FN_COS))
 		mpq_neg(factor, factor);
 	mpq_add(other->factor, other->factor, factor);
-	mpq_div(factor, factor, w->unit);
 	mpq_neg(factor, factor);
-	sum_add(sum, TERM_SEQUENCE, shifted(w, slope_of(w, partner)), 0, factor);
+	sum_add(slopes, TERM_SEQUENCE, slope_of(w, partner), 0, factor);
 }
 
 /* ---- squares ---- */
@@ -233,12 +223,79 @@ static void square_key(struct sequencing *w, struct sum *sum, int index)
 	add_factors(sum, &f, factor);
 }
 
+/* ---- sums of slopes, shifted: of a chain the rows differ by sums that differ by one ---- */
+
+static void drop_zeros(struct sum *sum)
+{
+	int count = 0;
+	for (int i = 0; i < sum->keys; i++)
+		if (mpq_sgn(sum->key[i].factor) != 0)
+			sum->key[count++] = sum->key[i];
+	sum->keys = count;
+}
+
+/* What is to be added to another to have it, and how many terms that has */
+static int difference(const struct sum *sum, const struct sum *other, struct sum *rest)
+{
+	RATIONAL minus = ZERO;
+	*rest = (struct sum){ 0 };
+	for (int i = 0; i < sum->keys; i++)
+		sum_add(rest, TERM_SEQUENCE, sum->key[i].a, 0, sum->key[i].factor);
+	for (int i = 0; i < other->keys; i++) {
+		mpq_neg(minus, other->key[i].factor);
+		sum_add(rest, TERM_SEQUENCE, other->key[i].a, 0, minus);
+	}
+	drop_zeros(rest);
+	return rest->keys;
+}
+
+static int shared_sum(struct sequencing *w, const struct sum *sum)
+{
+	RATIONAL one = RATIO(1, 1);
+	struct sum rest, all, made = { 0 };
+	int best = NONE, least = difference(sum, &made, &all) - 1;
+	for (int i = 0; i < w->shared; i++) {
+		const int terms = difference(sum, &w->share[i].sum, &rest);
+		best = terms < least ? i : best;
+		least = terms < least ? terms : least;
+	}
+	if (best != NONE && difference(sum, &w->share[best].sum, &rest) == 0)
+		return w->share[best].sequence;
+	if (best != NONE) {
+		sum_add(&made, TERM_SEQUENCE, shared_sum(w, &rest), 0, one);
+		sum_add(&made, TERM_SEQUENCE, w->share[best].sequence, 0, one);
+	}
+	const int sequence = sum_sequence(w, best == NONE ? &all : &made);
+	ENLARGE(w->share, (size_t)w->shared + 1);
+	w->share[w->shared].sum = all;
+	w->share[w->shared++].sequence = sequence;
+	return sequence;
+}
+
+/* Its derivative in time */
+static int shifted(struct sequencing *w, int sequence)
+{
+	RATIONAL scale = RATIO(1, 1);
+	mpq_div(scale, scale, w->unit);
+	for (int i = 0; i < w->x->count; i++)
+		if (at(w, i)->shifts && at(w, i)->a == sequence)
+			return i;
+	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_RATE, .state = NONE, .a = sequence, .b = NONE,
+						  .shifts = true,
+						  .exponent = equation_number(w->step->model, scale).value });
+}
+
 void shift_rates(struct sequencing *w, struct sum *sum)
 {
+	RATIONAL one = RATIO(1, 1);
+	struct sum slopes = { 0 };
 	for (int i = 0; i < sum->keys && w->solving; i++)
 		if (mpq_sgn(sum->key[i].factor) != 0)
-			shift_key(w, sum, i);
+			shift_key(w, sum, i, &slopes);
+	if (slopes.keys)
+		sum_add(sum, TERM_SEQUENCE, shifted(w, shared_sum(w, &slopes)), 0, one);
 	for (int i = 0; i < sum->keys && w->solving; i++)
 		if (mpq_sgn(sum->key[i].factor) != 0)
 			square_key(w, sum, i);
+	drop_zeros(sum);
 }

@@ -256,7 +256,9 @@ static struct multiplier number_at(const struct recurrences *r, int k)
 
 static tape_ref shifted(struct recurrences *r, const struct sequence *s, int k, part_of *part)
 {
-	return recurrence_scaled(r, number_at(r, k + 1), part(r, s->a, k + 1));
+	struct multiplier factor = number_at(r, k + 1);
+	factor.number *= s->shifts ? s->exponent : 1;
+	return recurrence_scaled(r, factor, part(r, s->a, k + 1));
 }
 
 /* The k-th where that of solutions is 0 */

@@ -529,7 +529,7 @@ static int solution_sequences(struct sequencing *w, const struct atom *a)
 	for (int i = 0; i < n * n; i++)
 		e->matrix[i] = entry_sequence(w, system.M[i]);
 	w->solving = true;
-	for (int i = 0; i < n; i++)
+	for (int i = n - 1; i >= 0; i--)        /* of a chain the last is the smallest sum, to which others add */
 		e->residual[i] = a->written ? sequence_of_form(w, a->written->residual[i]) : residual_of_row(w, e, i);
 	w->solving = false;
 	return e->first;

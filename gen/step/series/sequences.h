@@ -24,7 +24,7 @@ enum sequence_kind {
 	SEQUENCE_QUOTIENT,          /* c = a/b; a NONE: 1/b */
 	SEQUENCE_ROOT,              /* c^2 = a */
 	SEQUENCE_POWER,             /* c = a^exponent, which is constant */
-	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1} */
+	SEQUENCE_RATE,              /* c_k = (k+1) a_{k+1}, of what shifts over the unit of time */
 	SEQUENCE_CHOICE,            /* a where the condition holds, else b */
 	SEQUENCE_SOLUTION           /* one component of x, of equations that are linear in it */
 };
@@ -88,6 +88,8 @@ struct sequencing {                 /* what the makers of sequences share */
 	int *uses;                  /* per atom */
 	int *atom;                  /* per atom: its sequence; NONE: not made yet */
 	bool solving;               /* residuals are made */
+	int shared;                 /* sums that are shifted, of which others are made */
+	struct { struct sum sum; int sequence; } *share;
 	int solutions;
 	struct { const struct atom *atom; int first; } *solution;
 	int *highest;               /* per coordinate: the solution that its highest derivative is; NONE */
