@@ -13,14 +13,15 @@ int plgen(int argc, char **argv);       /* what the program's main returns; it m
 
 /* ---- options.c: the command line ---- */
 
-enum print { PRINT_C, PRINT_HEADER, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION, PRINT_RESPONSE,
-	     PRINT_PLOT, PRINT_REPORT };
+enum print { PRINT_C, PRINT_HEADER, PRINT_KERNEL, PRINT_EXPLAIN, PRINT_JSON, PRINT_PROGRAM, PRINT_SOLUTION,
+	     PRINT_RESPONSE, PRINT_PLOT, PRINT_REPORT };
 struct options {
 	const char *spec, *output, *depfile, *a2l, *solution, *tunable;
 	const char *value;              /* of --response, --plot */
 	const char *params;             /* a file with values of params, which come before those of -D; */
 	int definitions;
 	const char **definition;        /* NAME=EXPR */
+	const char *target;             /* of a kernel that is printed: opencl, cuda or openmp */
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
 	bool equilibrium;               /* equilibria are listed, as text or JSON */
 	bool campbell;                  /* the picture of --plot, with: */

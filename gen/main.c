@@ -337,6 +337,7 @@ static void print_main_text(void *context)
 	switch (options->print) {
 	case PRINT_C:        emit_code(to, w->step, options->banner, header_name(w), options->rhs); break;
 	case PRINT_HEADER:   emit_header(to, w->step, options->banner, options->rhs); break;
+	case PRINT_KERNEL:   emit_device(to, w->step, options->banner, options->target); break;
 	case PRINT_EXPLAIN:  explain_text(to, w->step); break;
 	case PRINT_JSON:     explain_json(to, w->step); break;
 	case PRINT_PROGRAM:  explain_program(to, w->step); break;
@@ -403,7 +404,7 @@ static void print_header(struct work *w)
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
 static void rewrite(struct work *w, struct file *f)
 {
-	if (w->options.bundle || w->options.fmu || algorithms_use(f->text, w->model->name))
+	if (w->options.bundle || w->options.fmu || w->options.target || algorithms_use(f->text, w->model->name))
 		file_rewrite(f, w->model->name, print_included);
 	if (w->options.request.own_math)
 		file_rewrite(f, w->model->name, print_own_functions);
@@ -414,7 +415,7 @@ static void rewrite(struct work *w, struct file *f)
 
 static void rewrite_code(struct work *w)
 {
-	if (w->options.print > PRINT_HEADER)
+	if (w->options.print > PRINT_KERNEL)
 		return;
 	rewrite(w, w->text);
 	if (w->header)

@@ -20,7 +20,7 @@ static void note_in_banner(struct options *options, const char *option)
 static void set_print(struct options *options, enum print print)
 {
 	if (options->print != PRINT_C)
-		wrong_usage("--header, --explain, --solution, --response, --plot and --report exclude "
+		wrong_usage("--header, --target, --explain, --solution, --response, --plot and --report exclude "
 			    "each other");
 	options->print = print;
 }
@@ -148,6 +148,16 @@ static void take_external(struct options *options, const char *value)
 		wrong_usage(format("--external takes casadi, found '%s'", value));
 	options->request.external = true;
 	note_in_banner(options, "--external casadi");
+}
+
+static void take_target(struct options *options, const char *value)
+{
+	if (strcmp(value, "opencl") != 0 && strcmp(value, "cuda") != 0 && strcmp(value, "openmp") != 0)
+		wrong_usage(format("--target takes opencl, cuda or openmp, found '%s'", value));
+	set_print(options, PRINT_KERNEL);
+	options->target = value;
+	options->request.batch = true;
+	note_in_banner(options, format("--target %s", value));
 }
 
 static void take_fmu_binary(struct options *options, const char *value)
@@ -295,6 +305,8 @@ static const struct row {
 	  .text = AT(tunable) },
 	{ "external", "casadi", "also emit NAME_casadi: one step with its Jacobian, as an external function of CasADi",
 	  .take = take_external },
+	{ "target", "opencl", "print a kernel instead, of the step of NAME_batch: opencl, cuda or openmp",
+	  .take = take_target },
 	{ "fast", NULL, "with tables for long runs: NAME_run by blocks of rows, and --refresh",
 	  .flag = AT(request.fast) },
 	{ "refresh", "N", "cos, sin, exp of loads every N steps, rotated between by a table; 1: every step (default)",

@@ -22,7 +22,8 @@ bool ends_in(const char *text, const char *end)
 static const char *option_of_print(enum print print)
 {
 	static const char *const option[] = {
-		[PRINT_HEADER] = "--header", [PRINT_EXPLAIN] = "--explain", [PRINT_JSON] = "--explain",
+		[PRINT_HEADER] = "--header", [PRINT_KERNEL] = "--target", [PRINT_EXPLAIN] = "--explain",
+		[PRINT_JSON] = "--explain",
 		[PRINT_PROGRAM] = "--explain", [PRINT_SOLUTION] = "--solution", [PRINT_RESPONSE] = "--response",
 		[PRINT_PLOT] = "--plot", [PRINT_REPORT] = "--report"
 	};

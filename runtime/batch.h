@@ -9,7 +9,7 @@
  *     PL_GROUPS                      of lanes, that step in turns: sums of one wait for none of their own
  *     PL_SHARED                      numbers of a step that instances share: `now`
  *     PL_FACTORS, PL_LANES           that params decide: of an instance; of these those that lanes read
- *     PL_RAMPS                       whether there is PL(hold)
+ *     PL_RAMPS, PL_SHARES            whether there are PL(hold), PL(batch_share)
  *
  *     PL(factor_at)[PL_FACTORS]               where in PL_TYPE each is
  *     PL(share_step)(s, u, now)               what a step reads of what instances share, which takes the step
@@ -313,17 +313,6 @@ PL_LANES_INLINE void PL(lanes_flush)(const PL(ahead) *ahead, size_t k, pl_lanes 
     }
 #endif
     (void)ahead, (void)k, (void)y;
-}
-
-PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
-{
-    size_t i;
-    if (out && j < b->count) {
-        PL_LANES_UNROLL
-        for (i = 0; i < PL_OUTPUTS; i++) {
-            pl_lanes_store(out + i * b->count + j, value[i], b->count - j);
-        }
-    }
 }
 
 /* Instances from `first` on, `groups` a lane, step by step with outputs of each */

@@ -15,6 +15,18 @@ PL_LANES_INLINE void PL(set_lane)(pl_lanes *all, size_t l, real one)
     memcpy((char *)all + l * sizeof one, &one, sizeof one);
 }
 
+/* Outputs of the instances from j on */
+PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
+{
+    size_t i;
+    if (out && j < b->count) {
+        PL_LANES_UNROLL
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            pl_lanes_store(out + i * b->count + j, value[i], b->count - j);
+        }
+    }
+}
+
 #if PL_EVENTS
 /* Of an instance the numbers in which its contact and status stand */
 #define PL_CONTACT_ROWS ((sizeof(pl_contact) + sizeof(int) + sizeof(real) - 1) / sizeof(real))
@@ -234,4 +246,22 @@ static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahea
     }
 }
 #endif
+#endif
+
+/* ---- for kernels: what instances share ---- */
+
+#if PL_SHARES
+void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
+{
+    size_t k;
+    PL(share_out)(&b->shared, now);
+    for (k = 0; k < n; k++) {
+        now += PL_SHARED;
+        PL(share_step)(&b->shared, PL_THE_INPUTS, now);
+        PL(share_out)(&b->shared, now);
+#if PL_INPUTS > 0
+        u += PL_INPUTS;
+#endif
+    }
+}
 #endif

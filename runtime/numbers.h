@@ -149,6 +149,12 @@
 #ifndef PL_OUT_ALONE
 #define PL_OUT_ALONE 0
 #endif
+#ifndef PL_OPENCL
+#define PL_OPENCL 0
+#endif
+#ifndef PL_CUDA
+#define PL_CUDA 0
+#endif
 #ifndef PL_OUT_SIZE
 #define PL_OUT_SIZE 0
 #endif
@@ -187,6 +193,9 @@
 #endif
 #ifndef PL_SEGMENTS
 #define PL_SEGMENTS 1
+#endif
+#ifndef PL_SHARES
+#define PL_SHARES 0
 #endif
 #ifndef PL_SINGLE
 #define PL_SINGLE 0

@@ -70,6 +70,12 @@
 #undef PL_DERIVATIVES
 #undef PL_DIRECT
 #undef PL_OUT_SIZE
+#undef PL_OPENCL
+#undef PL_CUDA
+#undef PL_GLOBAL
+#undef PL_KERNEL
+#undef PL_OWN_FUNCTION
+#undef PL_SIZE_TYPE
 #undef PL_OUT_ALONE
 #undef PL_SCALED
 #undef PL_SEEDED
@@ -246,6 +252,7 @@
 #undef PL_SHORTEST
 #undef PL_SINGLE
 #undef PL_SIZE
+#undef PL_SHARES
 #undef PL_SLOPE
 #undef PL_SLOPES
 #undef PL_SLOPE_ROUNDED

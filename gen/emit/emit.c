@@ -228,6 +228,13 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 		emit_derivative_declarations(&e);
 }
 
+void emit_device(FILE *to, const struct step *step, const char *options, const char *target)
+{
+	struct emitter e = emitter_new(to, step, options);
+	emit_banner(&e);
+	emit_kernel(&e, target);
+}
+
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)
 {
 	struct emitter made = emitter_new(to, step, options), *e = &made;

@@ -85,5 +85,6 @@ void emit_normal_tables(const struct emitter *e);
 
 void emit_batch_declarations(const struct emitter *e);
 void emit_batch(const struct emitter *e);
+void emit_kernel(const struct emitter *e, const char *target);   /* emit_kernel.c; leaves the statement */
 
 #endif

@@ -279,6 +279,136 @@ for compiler in "${CC:-cc} -std=c99 -O0 $warnings" "${CC:-cc} -std=c99 -O2 $warn
     result $? "a model written by hand, ${compiler%% -W*}"
 done
 
+# ---- kernels: by the compiler for OpenMP, and by OpenCL where there is a device, against NAME_batch ----
+
+cat >kernel.c <<'END'
+/* Bits of states, peaks and sums of a kernel against those of NAME_batch */
+#include "m.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifdef REAL_FLOAT
+typedef float real;
+#else
+typedef double real;
+#endif
+enum { COUNT = 37, ROWS = 90, INPUTS = M_INPUTS ? M_INPUTS : 1, SHARED = M_BATCH_SHARED ? M_BATCH_SHARED : 1 };
+void m_kernel(unsigned long long count, unsigned long long n, real *y, const real *factors, const real *now, real *peak,
+              real *sum);
+static real y[2][M_BATCH_ROWS * COUNT], peak[2][M_OUTPUTS * COUNT], sum[2][M_OUTPUTS * COUNT];
+static real out[ROWS * M_OUTPUTS * COUNT], now[(ROWS + 1) * SHARED], u[ROWS * INPUTS];
+#ifdef M_BATCH_FACTORED
+static real factors[M_BATCH_FACTORS * COUNT];
+#else
+static real factors[1];
+#endif
+
+int main(void)
+{
+    m_instances b = {0}, of_device;
+    int i, j, k, apart;
+    b.count = COUNT;
+    b.y = y[0];
+    b.peak = peak[0];
+#ifdef M_BATCH_FACTORED
+    b.factors = factors;
+#endif
+    m_batch_init(&b);
+    for (j = 0; j < COUNT; j++) {
+        real state[M_STATES];
+        for (i = 0; i < M_STATES; i++)
+            state[i] = (real)cos(3.0 * i + j);
+#ifdef M_BATCH_FACTORED
+        {
+            static m_coeffs c;
+            real params[M_PARAMS];
+            c = m_nominal;
+            for (i = 0; i < M_PARAMS; i++)
+                params[i] = m_nominal.params[i] * (real)(1.0 + 0.01 * j);
+            if (m_retune(&c, params, m_nominal.h) != 0 || m_batch_use(&b, (size_t)j, &c) != 0)
+                return 2;
+        }
+#endif
+        m_batch_set(&b, (size_t)j, state);
+    }
+    for (i = 0; i < ROWS * INPUTS; i++)
+        u[i] = (real)sin(0.3 * i);
+    memcpy(y[1], y[0], sizeof y[0]);
+    memcpy(peak[1], peak[0], sizeof peak[0]);
+    of_device = b;
+#if HAS_INPUTS
+    m_batch_share(&of_device, ROWS, u, now);
+    m_batch(&b, ROWS, u, out);
+#else
+    m_batch_share(&of_device, ROWS, now);
+    m_batch(&b, ROWS, out);
+#endif
+    m_kernel(COUNT, ROWS, y[1], factors, now, peak[1], sum[1]);
+    for (k = 0; k < ROWS; k++)
+        for (i = 0; i < M_OUTPUTS * COUNT; i++)
+            sum[0][i] += out[k * M_OUTPUTS * COUNT + i];
+    apart = memcmp(y[0], y[1], sizeof y[0]) != 0 || memcmp(peak[0], peak[1], sizeof peak[0]) != 0 ||
+            memcmp(sum[0], sum[1], sizeof sum[0]) != 0 || memcmp(&b.shared, &of_device.shared, sizeof b.shared) != 0;
+    printf("# state 0 of instance 1: %.17g by the kernel, %.17g in the batch\n", (double)y[1][1], (double)y[0][1]);
+    return apart;
+}
+END
+echo 'int main(void) { return 0; }' >linked.c
+openmp=-fopenmp
+${CC:-cc} $openmp linked.c -o linked 2>/dev/null || openmp=
+# kernel SPEC OPTION ...: that of OpenMP
+kernel() {
+    spec=$1
+    shift
+    chosen "kernel of $spec $*" || return 0
+    what="-DHAS_INPUTS=1"
+    {
+        "$plgen" --batch --prefix m "$@" -o m.c "$root/$spec" &&
+            "$plgen" --target openmp --prefix m "$@" "$root/$spec" >m_kernel.c &&
+            { ! grep -q 'M_INPUTS = 0' m.h || what=-DHAS_INPUTS=0; } &&
+            { ! grep -q M_BATCH_FACTORS m.h || what="$what -DM_BATCH_FACTORED"; } &&
+            { ! grep -q '^#define PL_FLOAT_ONLY' m.h || what="$what -DREAL_FLOAT"; } &&
+            ${CC:-cc} -std=c99 -O1 -ffp-contract=off $openmp $warnings -Wno-unknown-pragmas -c m_kernel.c \
+                -o m_kernel.o &&
+            ${CC:-cc} -std=c99 -O1 -ffp-contract=off $what -I"$root/runtime" -I. kernel.c m.c m_kernel.o "$archive" \
+                -lm $openmp -o kernel && ./kernel
+    } >log 2>&1
+    result $? "kernel of $spec${*:+ $*}: the bits of the batch"
+}
+kernel models/oscillator.spec
+kernel models/sdcsf.spec --form delta --accuracy compensated --real float
+kernel tests/batch/forced.spec
+# refused SPEC WHY
+refused() {
+    "$plgen" --target cuda "$root/$1" >kernel.cu 2>log
+    status=$?
+    grep -q "error: --target cuda: $2" log && [ $status -eq 1 ] && [ ! -s kernel.cu ]
+    result $? "no kernel of $1: $2"
+}
+refused models/gear1.spec 'where a step may have an event the search takes it'
+refused models/pendulum.spec 'the remainder is not linear in the state'
+refused tests/peaks/peaks.spec 'peaks are looked for inside its steps'
+awk '/^```c$/ { inside = 1; text = ""; next }
+    /^```$/ { if (inside && text ~ /device\.c: /) printf "%s", text; inside = 0 }
+    inside { text = text $0 "\n" }' "$root/doc/api.md" >device.c
+name='the program of doc/api.md, by OpenCL: the bits of the batch'
+if ! ${CC:-cc} -include CL/cl.h -DCL_TARGET_OPENCL_VERSION=120 linked.c -lOpenCL -o linked 2>/dev/null; then
+    skip "$name" 'there is no OpenCL to link with: ocl-icd-opencl-dev'
+else
+    "$plgen" --batch -o oscillator_pl.c "$root/models/oscillator.spec" &&
+        "$plgen" --target opencl -o oscillator_pl.cl "$root/models/oscillator.spec" &&
+        ${CC:-cc} -std=c99 -O1 -ffp-contract=off -I"$root/runtime" -I. device.c oscillator_pl.c "$archive" \
+            -lOpenCL -lm -o device && POCL_CACHE_DIR=$PWD XDG_CACHE_HOME=$PWD ./device >log 2>&1
+    status=$?
+    if [ $status -eq 2 ]; then
+        skip "$name" 'OpenCL finds no device: pocl-opencl-icd'
+    else
+        result $status "$name"
+    fi
+fi
+
 # tcc adds one number at a time: groups of lanes that instances do not fill are those of others
 [ -n "${LONG:-}" ] || agrees 0 "${CC:-cc} -std=c99" -O0 models/oscillator.spec
 

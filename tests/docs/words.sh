@@ -28,8 +28,6 @@ gathered folded except gen/step/linear/large.c
 grip friction_force
 holder constraint
 holders constraints
-kernel phi_weight
-kernels phi_weights
 lean tangent
 losses truncation_errors
 person text

@@ -119,6 +119,12 @@ void emit_batch_declarations(const struct emitter *e)
 	if (e->step->no.lanes || has_regions(e))
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
+	if (!e->step->no.lanes && !has_regions(e) && !has_peaks(e))
+		say(e, "/* For $n_kernel on a device (plgen --target): now[n + 1][$N_BATCH_SHARED] receives what all\n"
+		       " * share in n steps%s; time goes on. */\n"
+		       "enum { $N_BATCH_SHARED = %d };\n"
+		       "void   $n_batch_share($n_instances *b, size_t n, %sdouble *now);\n",
+		    inputs ? ", n rows of u" : "", b.shared, inputs ? "const double *u, " : "");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
 	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n",
 	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
@@ -228,7 +234,8 @@ static void emit_include(const struct batch *b)
 	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
 		   { "ROWS", has_regions(e) ? 0 : rows_of(e) }, { "EVENTS", has_regions(e) },
-		   { "OUT_ALONE", b->out_alone }, { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
+		   { "OUT_ALONE", b->out_alone }, { "SHARES", !has_regions(e) && !has_peaks(e) },
+		   { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
 		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps },

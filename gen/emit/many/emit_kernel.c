@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* NAME_kernel: the step and the outputs of lanes, of which a work item of a device has one, and kernel.h. */
+#include "inner.h"
+#include "emit/state.h"
+#include "emit/steps.h"
+
+#include <string.h>
+
+static const char *const words_of_opencl =
+	"#pragma OPENCL FP_CONTRACT OFF\n"
+	"#  define PL_LANES_INLINE static\n";
+static const char *const words_of_cuda = "#  define PL_LANES_INLINE static __device__ inline\n";
+static const char *const words_of_openmp = "#  define PL_LANES_INLINE static inline\n";
+
+/* What stands against a kernel: some instances of a batch would each step by themselves. */
+static void check_kernel(const struct emitter *e, const char *target)
+{
+	const char *why = step_objection(e->step, CAN_KERNEL);
+	if (!why)
+		why = e->step->no.lanes;
+	if (why)
+		error(e->model->spec->name_at, "--batch steps any model", "--target %s: %s", target, why);
+}
+
+void emit_kernel(const struct emitter *e, const char *target)
+{
+	const bool opencl = strcmp(target, "opencl") == 0, cuda = strcmp(target, "cuda") == 0;
+	check_kernel(e, target);
+	struct batch b = plan_batch(e);
+	say(e, "\n"
+	       "/* For %s: a work item steps one instance. The host is the C of plgen --batch: it has the arrays, and\n"
+	       " * what all share comes from $n_batch_share. Bits are those of $n_batch where products are not\n"
+	       " * contracted%s. */\n"
+	       "%s%s#  define pl_lanes_all(value) (value)\n"
+	       "typedef double pl_lanes;\n",
+	    opencl ? "OpenCL" : cuda ? "CUDA" : "OpenMP", cuda ? " (nvcc -fmad=false)" : "",
+	    opencl && !e->model->request.single ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n" : "",
+	    opencl ? words_of_opencl : cuda ? words_of_cuda : words_of_openmp);
+	emit_sizes(e, "kernel.h", { "STEPPED", batch_stepped_rows(e) }, { "OUTPUTS", e->model->outputs },
+		   { "SHARED", b.shared }, { "LANES", b.lanes }, { "OPENCL", opencl }, { "CUDA", cuda });
+	say(e, "#include \"kernel.h\"\n");
+	emit_lanes_step(&b);
+	emit_lanes_out(&b);
+}

@@ -1,0 +1,122 @@
+/* SPDX-License-Identifier: MIT-0 */
+/* kernel.h: NAME_kernel, many steps of many instances on a device, for OpenCL, CUDA and OpenMP: each work item steps
+ * one instance of NAME_batch, with the sums of its lanes.  Loads and samples, which instances share, come from
+ * NAME_batch_share on the host.  Included by the file of the kernel, which defines before it
+ *
+ *     PL_OPENCL, PL_CUDA         1: for that; else for OpenMP
+ *     PL_STEPPED, PL_OUTPUTS     numbers of an instance that a step changes, outputs
+ *     PL_SHARED, PL_LANES        numbers of a step that instances share; that params decide, of an instance
+ *     pl_lanes                   a number, of which there is one in each work item
+ *
+ * and behind it PL(lanes_step) and PL(lanes_out), as batch.h has them. */
+#include "numbers.h"
+
+#if PL_OPENCL
+#define PL_GLOBAL __global
+#define PL_OWN_FUNCTION static
+#define PL_KERNEL __kernel void
+#define PL_SIZE_TYPE ulong
+#elif PL_CUDA
+#define PL_GLOBAL
+#define PL_OWN_FUNCTION static __device__ inline
+#define PL_KERNEL extern "C" __global__ void
+#define PL_SIZE_TYPE unsigned long long
+#else
+#define PL_GLOBAL
+#define PL_OWN_FUNCTION static inline
+#define PL_KERNEL void
+#define PL_SIZE_TYPE unsigned long long
+#endif
+#define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
+
+/* As pl_accumulate of the runtime */
+PL_OWN_FUNCTION pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lanes small, pl_lanes *low)
+{
+    const pl_lanes whole = sum + term, part = whole - sum;
+    const pl_lanes error = ((sum - (whole - part)) + (term - part)) + (small + *low), result = whole + error;
+    *low = error - (result - whole);
+    return result;
+}
+
+PL_OWN_FUNCTION void PL(lanes_step)(pl_lanes *y, const pl_lanes *factor, const real *now);
+PL_OWN_FUNCTION void PL(lanes_out)(const pl_lanes *y, const pl_lanes *factor, const real *now, pl_lanes *out);
+
+/* n steps of instance j; most, sum: of each output the largest size and the sum at their ends */
+PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_TYPE n, PL_GLOBAL real *y,
+                                    PL_GLOBAL const real *factors, PL_GLOBAL const real *now, PL_GLOBAL real *peak,
+                                    PL_GLOBAL real *sum)
+{
+    real state[PL_STEPPED], factor[PL_HAS(PL_LANES)], shared[PL_HAS(PL_SHARED)], out[PL_OUTPUTS];
+    real most[PL_OUTPUTS], total[PL_OUTPUTS];
+    PL_SIZE_TYPE k;
+    int i;
+    factor[0] = shared[0] = 0;
+    for (i = 0; i < PL_STEPPED; i++) {
+        state[i] = y[(PL_SIZE_TYPE)i * count + j];
+    }
+    for (i = 0; i < PL_LANES; i++) {
+        factor[i] = factors[(PL_SIZE_TYPE)i * count + j];
+    }
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        most[i] = peak[(PL_SIZE_TYPE)i * count + j];
+        total[i] = sum[(PL_SIZE_TYPE)i * count + j];
+    }
+    for (k = 1; k <= n; k++) {
+        for (i = 0; i < PL_SHARED; i++) {
+            shared[i] = now[k * PL_SHARED + (PL_SIZE_TYPE)i];
+        }
+        PL(lanes_step)(state, factor, shared);
+        PL(lanes_out)(state, factor, shared, out);
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            const real size = out[i] < 0 ? -out[i] : out[i];
+            most[i] = most[i] > size ? most[i] : size;
+            total[i] += out[i];
+        }
+    }
+    for (i = 0; i < PL_STEPPED; i++) {
+        y[(PL_SIZE_TYPE)i * count + j] = state[i];
+    }
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        peak[(PL_SIZE_TYPE)i * count + j] = most[i];
+        sum[(PL_SIZE_TYPE)i * count + j] = total[i];
+    }
+    (void)factors;
+    (void)now;
+}
+
+/* All of them: y and factors as in NAME_instances, now as NAME_batch_share has it, peak and sum: [outputs][count] */
+PL_KERNEL PL(kernel)(PL_SIZE_TYPE count, PL_SIZE_TYPE n, PL_GLOBAL real *y, PL_GLOBAL const real *factors,
+                     PL_GLOBAL const real *now, PL_GLOBAL real *peak, PL_GLOBAL real *sum)
+{
+#if PL_OPENCL
+    const PL_SIZE_TYPE j = get_global_id(0);
+    if (j < count) {
+        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+    }
+#elif PL_CUDA
+    const PL_SIZE_TYPE j = (PL_SIZE_TYPE)blockIdx.x * blockDim.x + threadIdx.x;
+    if (j < count) {
+        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+    }
+#else
+    PL_SIZE_TYPE j;
+#pragma omp target teams distribute parallel for \
+    map(tofrom : y[:PL_STEPPED * count], peak[:PL_OUTPUTS * count], sum[:PL_OUTPUTS * count]) \
+    map(to : factors[:PL_LANES * count], now[:(n + 1) * PL_SHARED])
+    for (j = 0; j < count; j++) {
+        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+    }
+#endif
+}
+
+#if PL_CUDA
+/* The same from the host, on memory of the device: by blocks of 128 instances */
+extern "C" int PL(launch)(PL_SIZE_TYPE count, PL_SIZE_TYPE n, real *y, const real *factors, const real *now, real *peak,
+                          real *sum)
+{
+    PL(kernel)<<<(unsigned)((count + 127) / 128), 128>>>(count, n, y, factors, now, peak, sum);
+    return (int)cudaGetLastError();
+}
+#endif
+
+#include "undef.h"
