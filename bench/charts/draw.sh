@@ -56,6 +56,7 @@ for name in operator_boundary papers_beam_tip; do
 	derive $name.csv $name.csv digits -v to=3
 done
 derive energy.csv energy.csv same -v in_column=steps
+derive largest_step.csv largest_step.csv same -v in_column=criterion
 
 mkdir "$work/pictures"
 # shellcheck disable=SC2016
