@@ -55,6 +55,9 @@ done
 for name in operator_boundary papers_beam_tip; do
 	derive $name.csv $name.csv digits -v to=3
 done
+for name in hard_methods headline_integrators headline_equal_step; do
+	derive $name.csv "precision_methods.csv $name.csv" unlike
+done
 derive energy.csv energy.csv same -v in_column=steps
 derive largest_step.csv largest_step.csv same -v in_column=criterion
 

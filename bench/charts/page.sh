@@ -113,7 +113,7 @@ picture() {
 table() {
 	there "$1" || return 0
 	echo "$1" >>"$shown"
-	made table -v name="$1" -v where="$2" "$folder/$1"
+	made table -v name="$1" -v where="$2" -v methods="$(! there precision_methods.csv || echo 1)" "$folder/$1"
 }
 
 # numbers FILE.csv: a link to it; what it has in its rows is for programs
@@ -243,9 +243,7 @@ index() {
 	if there precision_methods.csv; then
 		echo '<h2 id="methods">Methods</h2>'
 		caption methods
-		printf '<details><summary>Settings</summary>'
 		table precision_methods.csv
-		echo '</details>'
 	fi
 	if there machine.csv; then
 		echo '<h2 id="machine">Measured on</h2>'
