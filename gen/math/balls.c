@@ -75,8 +75,7 @@ struct magnitude magnitude_of_rational(mpq_srcptr q)
 		mpz_mul_2exp(quotient, mpq_denref(q), (mp_bitcnt_t)-shift);
 		mpz_tdiv_q(quotient, mpq_numref(q), quotient);
 	}
-	struct magnitude result = magnitude(mpz_get_ui(quotient) + 1, -shift);      /* the quotient has 40 or 41 bits */
-	return result;
+	return magnitude(mpz_getlimbn(quotient, 0) + 1, -shift);        /* the quotient has 40 or 41 bits */
 }
 
 /* ---- balls ---- */

@@ -208,8 +208,12 @@ static uint64_t inverse_mod(uint64_t a)
 static uint64_t *reduce(struct poly a)
 {
 	uint64_t *r = ARRAY(uint64_t, a.length);
-	for (int i = 0; i < a.length; i++)
-		r[i] = mpz_fdiv_ui(a.c[i], SCREEN_PRIME);
+	for (int i = 0; i < a.length; i++) {
+		if (mpz_sgn(a.c[i]) != 0)
+			r[i] = mpn_mod_1(mpz_limbs_read(a.c[i]), (mp_size_t)mpz_size(a.c[i]), SCREEN_PRIME);
+		if (mpz_sgn(a.c[i]) < 0 && r[i] > 0)
+			r[i] = SCREEN_PRIME - r[i];
+	}
 	return r;
 }
 

@@ -56,10 +56,10 @@ static uint64_t reduce(const struct taylor *t, uint64_t *residue)
 		for (done = 0; done < cells && mpz_invert(inverse, mpq_denref(t->A[done]), prime); done++) {
 			mpz_mul(inverse, inverse, mpq_numref(t->A[done]));
 			mpz_mod(inverse, inverse, prime);
-			residue[done] = mpz_get_ui(inverse);
+			residue[done] = mpz_getlimbn(inverse, 0);
 		}
 	}
-	return mpz_get_ui(prime);
+	return mpz_getlimbn(prime, 0);
 }
 
 /* row <- x A modulo the prime; eight products of 62-bit factors fit into 127 bits */

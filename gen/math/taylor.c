@@ -463,7 +463,7 @@ void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value)
 		if (U->sign[at] < 0)
 			mpz_neg(left, left);
 	}
-	mpz_set_ui(radius, (unsigned long)bound.m);
+	mpz_import(radius, 1, -1, sizeof bound.m, 0, 0, &bound.m);
 	if (bound.e >= last)
 		mpz_mul_2exp(radius, radius, (mp_bitcnt_t)(bound.e - last));
 	else

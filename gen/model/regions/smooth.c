@@ -123,9 +123,9 @@ struct spot {                       /* a point of the surface: what lies there i
 	mpq_t *scale;
 };
 
-static unsigned long scattered(unsigned long a, unsigned long b)
+static uint64_t scattered(uint64_t a, uint64_t b)
 {
-	unsigned long x = a * 0x9e3779b97f4a7c15u + b * 0xd1b54a32d192ed03u + 0x632be59bd9b4e019u;
+	uint64_t x = a * 0x9e3779b97f4a7c15u + b * 0xd1b54a32d192ed03u + 0x632be59bd9b4e019u;
 	x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
 	x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
 	return x ^ (x >> 31);
@@ -133,10 +133,10 @@ static unsigned long scattered(unsigned long a, unsigned long b)
 
 static void draw_number(const struct spot *p, unsigned long which, mpfr_ptr value)
 {
-	unsigned long random = scattered(which, (unsigned long)p->draw);
+	uint64_t random = scattered(which, (uint64_t)p->draw);
 	int scales = p->scales + 3;
-	int scale = (int)(random % (unsigned long)scales);
-	mpfr_set_ui(value, (random >> 8) % 4096 + 1, MPFR_RNDN);
+	int scale = (int)(random % (uint64_t)scales);
+	mpfr_set_ui(value, (unsigned long)((random >> 8) % 4096 + 1), MPFR_RNDN);
 	mpfr_div_2ui(value, value, 11, MPFR_RNDN);      /* 0 .. 2 times a size */
 	if (scale < p->scales)
 		mpfr_mul_q(value, value, p->scale[scale], MPFR_RNDN);

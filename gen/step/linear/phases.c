@@ -65,9 +65,9 @@ static struct fixed_point fixed_from(const struct step *step, mpq_srcptr q, enum
 		saturate(full, bits);
 	mpz_fdiv_r_2exp(full, full, (mp_bitcnt_t)bits);
 	mpz_fdiv_r_2exp(part, full, 64);
-	x.low = mpz_get_ui(part);
+	x.low = mpz_getlimbn(part, 0);
 	mpz_fdiv_q_2exp(part, full, 64);
-	x.high = mpz_get_ui(part);
+	x.high = mpz_getlimbn(part, 0);
 	return x;
 }
 
@@ -120,7 +120,7 @@ static struct rate rate_of(const struct step *step, mpq_srcptr q, enum phase_uni
 	for (int k = 0; k < rate.words; k++) {
 		mpz_fdiv_q_2exp(word, digits, (mp_bitcnt_t)(rate.words - 1 - k) * 64);
 		mpz_fdiv_r_2exp(word, word, 64);
-		rate.word[k] = mpz_get_ui(word);
+		rate.word[k] = mpz_getlimbn(word, 0);
 	}
 	return rate;
 }
