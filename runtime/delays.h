@@ -9,6 +9,8 @@
  *     PL_PARTS                   steps of the core in one of the model
  *     PL_RING                    samples of each input, the newest among them
  *     PL_RAMPS                   whether some input goes straight from sample to sample
+ *     PL_DERIVATIVES             columns of derivatives, those of the core; 0: none
+ *     PL_LATE                    1: some param moves a delay: PL(late)[column][input][state]
  *     PL_PARAMS                  tunable ones; PL_SPEC_H then: step of the model [s]
  *     PL_AT                      whether there are values between steps; PL_CORE_H then: step of the core [s]
  *
@@ -36,6 +38,12 @@ static int PL(slot)(const PL_TYPE *s, int steps)
     const int at = s->newest - steps;
     return at < 0 ? at + PL_RING : at;
 }
+
+#if PL_RAMPS
+#define PL_IS_HELD(i) !PL(is_ramp)[i]
+#else
+#define PL_IS_HELD(i) 1
+#endif
 
 #if PL_RAMPS
 /* A ramp ends where PL(hold) may make the next begin anew, with a jump; delayed ones do so later. */
@@ -77,14 +85,19 @@ static void PL(samples)(const PL_TYPE *s, int part, real u[PL_ALL])
     }
 }
 
-/* One step of the core, with what its inputs are in this part of the step */
-static void PL(step_core)(PL_TYPE *s, int part)
+/* The inputs of the core over a part of the step, of which ramps begin anew */
+static void PL(samples_of_part)(PL_TYPE *s, int part, real all[PL_ALL])
 {
-    real all[PL_ALL];
     PL(samples)(s, part, all);
 #if PL_RAMPS
     PL(starts)(s, part, s->core.u);
 #endif
+}
+
+static void PL(step_core)(PL_TYPE *s, int part)
+{
+    real all[PL_ALL];
+    PL(samples_of_part)(s, part, all);
     PL_CORE(step)(&s->core, all);
 }
 
@@ -181,23 +194,98 @@ void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
 #endif
 
 #if PL_AT
+/* The part of the step in which tau is, and where in it */
+static int PL(part_at)(real *tau)
+{
+    int part;
+    for (part = 0; part < PL_PARTS - 1 && *tau > (real)(part + 1) * PL_CORE_H; part++) {
+        ;
+    }
+    *tau -= (real)part * PL_CORE_H;
+    *tau = *tau < PL_CORE_H ? *tau : PL_CORE_H; /* rounding must not lead behind the part */
+    return part;
+}
+
 void PL(at)(const PL_TYPE *s, const real u[PL_INPUTS], real tau, real y[PL_STATES])
 {
     PL_TYPE now = *s;
     real all[PL_ALL];
-    int part;
+    const int part = PL(part_at)(&tau);
+    int k;
     PL(keep)(&now, u);
-    for (part = 0; part < PL_PARTS - 1 && tau > (real)(part + 1) * PL_CORE_H; part++) {
-        PL(step_core)(&now, part);
+    for (k = 0; k < part; k++) {
+        PL(step_core)(&now, k);
     }
-    tau -= (real)part * PL_CORE_H;
-    tau = tau < PL_CORE_H ? tau : PL_CORE_H; /* rounding must not lead behind the part */
-    PL(samples)(&now, part, all);
-#if PL_RAMPS
-    PL(starts)(&now, part, now.core.u);
-#endif
+    PL(samples_of_part)(&now, part, all);
     PL_CORE(at)(&now.core, all, tau, y);
 }
+#endif
+
+#if PL_DERIVATIVES > 0
+
+/* The same beside derivatives: where an input jumps, later by a param as dt is, they lose what the jump does in dt. */
+static void PL(samples_of_part_d)(PL_TYPE *s, PL(d) *ds, int part, real all[PL_ALL])
+{
+#if PL_LATE
+    real before[PL_ALL], jump;
+    int p, i, k;
+    for (k = 0; k < PL_ALL; k++) {
+        before[k] = s->core.u[k];
+    }
+#endif
+    PL(samples_of_part)(s, part, all);
+#if PL_LATE
+    for (k = 0; k < PL_ALL; k++) {
+        jump = (PL_IS_HELD(k) ? all[k] : s->core.u[k]) - before[k];
+        for (p = 0; p < PL_DERIVATIVES; p++) {
+            for (i = 0; i < PL_STATES; i++) {
+                ds->s[p][i] += PL(late)[p][k][i] * jump;
+            }
+        }
+    }
+#else
+    (void)ds;
+#endif
+}
+
+static void PL(step_core_d)(PL_TYPE *s, PL(d) *ds, int part)
+{
+    real all[PL_ALL];
+    PL(samples_of_part_d)(s, ds, part, all);
+    PL_CORE(step_d)(&s->core, ds, all);
+}
+
+void PL(step_d)(PL_TYPE *s, PL(d) *ds, const real u[PL_INPUTS])
+{
+    int part;
+    PL(keep)(s, u);
+    for (part = 0; part < PL_PARTS; part++) {
+        PL(step_core_d)(s, ds, part);
+    }
+}
+
+void PL(out_d)(const PL_TYPE *s, const PL(d) *ds, real J[PL_OUTPUTS][PL_DERIVATIVES])
+{
+    PL_CORE(out_d)(&s->core, ds, J);
+}
+
+#if PL_AT
+void PL(at_d)(const PL_TYPE *s, const PL(d) *ds, const real u[PL_INPUTS], real tau,
+              real S[PL_DERIVATIVES][PL_STATES])
+{
+    PL_TYPE now = *s;
+    PL(d) then = *ds;
+    real all[PL_ALL];
+    const int part = PL(part_at)(&tau);
+    int k;
+    PL(keep)(&now, u);
+    for (k = 0; k < part; k++) {
+        PL(step_core_d)(&now, &then, k);
+    }
+    PL(samples_of_part_d)(&now, &then, part, all);
+    PL_CORE(at_d)(&now.core, &then, all, tau, S);
+}
+#endif
 #endif
 
 #include "undef.h"

@@ -150,12 +150,25 @@ static int PL(counted)(const pl_contact *contact, real done, int count, pl_cross
     return count + contact->crossings;
 }
 
+/* Whether segment k ends in the step, or in what is left of it to tau.  Where there are no regions the next step begins
+ * in the segment behind a change at the end of this one, so that derivatives have to pass it here. */
+#define PL_INSTANT (PL_H * (PL_SINGLE ? (real)0x1p-20 : (real)0x1p-48))
+static int PL(ends_before)(real change, real tau PL_AND_VARIATION)
+{
+#if PL_COLUMNS_D > 0
+    if (PL_SWITCHING_FUNCTIONS == 0 && v != NULL) {
+        return change <= tau + PL_INSTANT;
+    }
+#endif
+    return PL_GUARDS ? change <= tau : change < tau;
+}
+
 /* x on by tau, from change to change of the loads.  Of what sticks and bounces a change at the end, too, is decided at
  * once: outputs read it. */
 static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
                             pl_crossing *crossing PL_AND_VARIATION)
 {
-    const real never = PL_GUARDS ? 2 * PL_H : tau;
+    const real never = PL_GUARDS || PL_SWITCHING_FUNCTIONS == 0 ? 2 * PL_H : tau;
     real done = 0, work[PL_WORK];
     int count = 0;
     for (;;) {
@@ -171,14 +184,14 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #endif
         PL_ADVANCE(&here, to - done, x, contact, crossing + count, work PL_V);
         count = PL(counted)(contact, done, count, crossing);
-        if (!(PL_GUARDS ? change <= tau : change < tau)) {
+        if (!PL(ends_before)(change, tau PL_V)) {
             break;
         }
         if (to > done) {
             done = to;
         }
 #if PL_COLUMNS_D > 0
-        if (v != NULL) {
+        if (v != NULL && !(PL_SWITCHING_FUNCTIONS == 0 && change <= PL_INSTANT)) {
             pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_SIZE * PL_SIZE, x);
             v->segment = segment + 1;
         }

@@ -146,6 +146,8 @@
 #undef PL_IMPACTS
 #undef PL_INDEFINITE
 #undef PL_INPUTS
+#undef PL_INSTANT
+#undef PL_IS_HELD
 #undef PL_IN_MODES
 #undef PL_INSIDE
 #undef PL_IS_ZERO
@@ -164,6 +166,7 @@
 #undef PL_LARGE
 #undef PL_LARGEST
 #undef PL_LARGER
+#undef PL_LATE
 #undef PL_LEADS
 #undef PL_TANGENT
 #undef PL_LEAST_PART

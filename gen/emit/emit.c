@@ -215,6 +215,14 @@ static void emit_model_beside(const struct emitter *e)
 		emit_jump(e);
 }
 
+static void declare_beside(const struct emitter *e)
+{
+	if (e->step->derivatives)
+		emit_derivative_declarations(e);
+	if (e->model->delays)
+		emit_delay_declarations(e);
+}
+
 void emit_header(FILE *to, const struct step *step, const char *options, bool rhs)
 {
 	struct emitter e = emitter_new(to, step, options);
@@ -222,10 +230,7 @@ void emit_header(FILE *to, const struct step *step, const char *options, bool rh
 		check_rhs(&e);
 	emit_banner(&e);
 	emit_declarations(&e, rhs);
-	if (e.model->delays)
-		emit_delay_declarations(&e);
-	if (step->derivatives)
-		emit_derivative_declarations(&e);
+	declare_beside(&e);
 }
 
 void emit_device(FILE *to, const struct step *step, const char *options, const char *target)
@@ -246,10 +251,8 @@ void emit_code(FILE *to, const struct step *step, const char *options, const cha
 		say(e, "#include \"%s\"\n", header_name);
 	else
 		emit_declarations(e, rhs);
-	if (!header_name && e->model->delays)
-		emit_delay_declarations(e);
-	if (!header_name && step->derivatives)
-		emit_derivative_declarations(e);
+	if (!header_name)
+		declare_beside(e);
 	emit_motion_of(e, rhs);
 	emit_declared_tables(e);
 	emit_further_functions(e, rhs);

@@ -3,6 +3,7 @@
 #include "declarations.h"
 #include "steps.h"
 #include "model/tunable/tuning.h"
+#include "step/slopes.h"
 
 #include <string.h>
 
@@ -84,6 +85,8 @@ void emit_delay_declarations(const struct emitter *core)
 	declare_selftest(e);
 	declare_model(e);
 	close_declarations(e);
+	if (e->step->derivatives)
+		emit_derivative_declarations(e);
 }
 
 /* ---- what delays.h asks ---- */
@@ -114,18 +117,42 @@ static int is_ramp(const struct emitter *e, int input)
 	return e->system->input[input].hold != 0;
 }
 
+/* Per column and input of the core what its jump by 1 does to the states, where a delay moves it */
+static void emit_moved_jumps(const struct emitter *e)
+{
+	const struct derivatives *derivatives = e->step->derivatives;
+	const struct delays *d = delays_of(e);
+	const struct layout *x = &e->step->layout;
+	const int states = e->system->states, all = d->inputs + d->count;
+	const int size[] = { derivatives->columns, all, states };
+	double *value = ARRAY(double, (size_t)(size[0] * all * states));
+	const double *A = slopes_of(e->step, 0);
+	for (int p = 0; p < derivatives->columns; p++)
+		for (int k = 0; k < d->count; k++)
+			for (int i = 0; i < states; i++)
+				value[(p * all + d->inputs + k) * states + i] =
+					derivatives->late[p * d->count + k] * A[i * x->size + x->input[d->inputs + k]];
+	emit_array(e, "Of each column, where its param moves a delay: what a jump of each input of the core by 1 does to "
+		   "the states", "late", 3, size, value, NULL);
+}
+
 static void emit_samples_of_core(const struct emitter *e)
 {
 	const struct delays *d = delays_of(e);
 	say(e, "\n/* Of each input of $n_core: which sample it is of, how many of its steps ago; is it a ramp? */\n");
 	emit_int_list(e, "input_of", d->inputs + d->count, list_of(e, input_of));
 	emit_int_list(e, "parts_ago", d->inputs + d->count, list_of(e, parts_ago));
+	const struct derivatives *derivatives = e->step->derivatives;
+	if (derivatives && derivatives->late)
+		emit_moved_jumps(e);
 	if (e->ramps)
 		emit_int_list(e, "is_ramp", d->inputs + d->count, list_of(e, is_ramp));
 	emit_sizes(e, "delays.h", { "STATES", e->system->states }, { "OUTPUTS", e->model->outputs },
 		   { "INPUTS", d->inputs },
 		   { "ALL", d->inputs + d->count }, { "PARTS", d->parts }, { "RING", samples_kept(e) },
 		   { "RAMPS", e->ramps }, { "AT", e->step->series.emitted },
+		   { "DERIVATIVES", derivatives ? derivatives->columns : 0 },
+		   { "LATE", derivatives && derivatives->late },
 		   { "PARAMS", tunables_of(e->model) ? tunables_of(e->model)->given : 0 });
 	say(e, "#define PL_CORE(name) $n_core_##name\n"
 	       "#define PL_CORE_H $N_CORE_H\n"
@@ -138,6 +165,8 @@ void emit_delays(const struct emitter *core)
 	const struct emitter outer = around(core), *e = &outer;
 	say(e, "\n/* ---- $n: the samples of delayed inputs ---- */\n");
 	emit_samples_of_core(e);
+	if (e->step->derivatives)
+		emit_derivatives_around(e);
 	if (e->model->request.batch)
 		emit_batch(e);
 	if (e->model->request.selftest)

@@ -58,6 +58,7 @@ void emit_outputs_now(const struct emitter *e);                   /* into out, o
 
 void emit_derivative_declarations(const struct emitter *e);
 void emit_step_derivatives(const struct emitter *e);
+void emit_derivatives_around(const struct emitter *e);
 
 void emit_run(const struct emitter *e);
 void emit_at(const struct emitter *e);

@@ -19,6 +19,7 @@ struct again {                      /* to build a model a second time, for build
 	const bool *factor;
 	const struct relative *relative; /* the coordinates to build the model over; NULL: the written ones */
 	bool undivided;             /* regions are those of all coordinates together */
+	bool by_regions;            /* a linear model as one of regions, of which it has one in each segment of time */
 	/* so many of the spec's derivatives, from the first on, as coordinates behind its own; 0: none */
 	int derivatives_from, derivatives;
 	/* this param has that value, to see how the equations follow it; NULL: none has */

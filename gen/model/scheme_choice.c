@@ -344,7 +344,7 @@ static bool choose_scheme(struct building *b)
 	b->collector.scheme = scheme_name(model->scheme);
 	if (model->scheme == SCHEME_EXACT)
 		keep_loads(b, format("scheme exact has no quadrature; %s have", leaving_schemes(" and ")));
-	if (model->scheme == SCHEME_EXACT && !linear && is_piecewise_linear(b)) {
+	if (model->scheme == SCHEME_EXACT && (!linear || b->request->again.by_regions) && is_piecewise_linear(b)) {
 		find_regions(b);
 		collect_full(b);                /* for outputs and NAME_rhs */
 		if (!diagnostics_errors())

@@ -163,7 +163,7 @@ struct slope {                      /* a derivative; an error at `at` where it h
 };
 struct node *slope_by(struct node *node, struct slope by);
 struct node *slope_of(struct node *node, struct place at);  /* in time */
-bool is_zero_node(const struct node *node);
+bool reads_states(const struct node *node);
 
 /* ---- unobservable.c ---- */
 

@@ -241,6 +241,10 @@ struct sensitivity {                /* what derivatives are by: a param, a state
 	int component, primes;      /* of a state */
 	const char *name;           /* k, x', q[2] */
 };
+struct spec;
+bool is_zero_node(const struct node *node);
+/* By a param, of t - d of a delayed input, at fixed t */
+struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *by, const struct symbol *delayed);
 struct assembly_part {                    /* of an assembly: a spec in it, as often as `use` names it */
 	const char *name;           /* front; inside another: half.front */
 	const char *file;           /* as written */

@@ -110,15 +110,6 @@ bool parse_sensitivities(struct spec *spec, const struct source *source)
 
 /* ---- what a derivative would have to jump at ---- */
 
-static bool reads_states(const struct node *node)
-{
-	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
-	bool reads = s && (s->kind == SYMBOL_COORD || (s->kind == SYMBOL_LET && s->value && reads_states(s->value)));
-	for (int i = 0; i < node->children && !reads; i++)
-		reads = reads_states(node->child[i]);
-	return reads;
-}
-
 /* The first formula that the state chooses and that may jump there: abs, min, max, deadzone and clip do not */
 static const struct node *jump_within(const struct node *node, bool *seen)
 {
@@ -327,6 +318,15 @@ static const char *suffix_of(const struct sensitivity *s)
 {
 	const char *name = s->component ? format("%s%d", s->symbol->name, s->component) : s->symbol->name;
 	return s->symbol->kind == SYMBOL_COORD ? format("%s%s_0", name, s->primes ? "_dot" : "") : name;
+}
+
+struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *by, const struct symbol *delayed)
+{
+	struct slope slope = { .at = by->at, .kind = SLOPE_PARAM, .name = by->name };
+	slope.param = by->symbol->kind == SYMBOL_PARAM ? by->symbol : NULL;
+	slope.moved = ARRAY(struct symbol *, (size_t)spec->count.symbols + 1);
+	slope.known = ARRAY(struct node *, (size_t)spec->count.symbols + 1);
+	return slope_by(delayed->when, slope);
 }
 
 void add_derivatives(struct spec *spec, int first, int count)

@@ -114,10 +114,20 @@ static bool is_constant_node(const struct node *node)
 	return constant;
 }
 
-/* A formula changes where this goes through 0: that moves with the param, and there the derivative jumps. */
+bool reads_states(const struct node *node)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool reads = s && (s->kind == SYMBOL_COORD || (s->kind == SYMBOL_LET && s->value && reads_states(s->value)));
+	for (int i = 0; i < node->children && !reads; i++)
+		reads = reads_states(node->child[i]);
+	return reads;
+}
+
+/* A formula changes where this goes through 0. In time that moves with the param, and there the derivative jumps; as
+ * the state chooses it does not, for then the formula does not jump (step/derivatives.c). */
 static void check_condition(const struct node *node, const struct slope *by)
 {
-	if (by->kind == SLOPE_PARAM && follows(node, by) && !is_constant_node(node))
+	if (by->kind == SLOPE_PARAM && follows(node, by) && !is_constant_node(node) && !reads_states(node))
 		error(node->at, "where a formula changes has to stay where it is",
 		      "no derivative by %s is built here: it moves where the formula changes", by->name);
 }
@@ -132,15 +142,17 @@ static struct node *varied_name(struct node *node, const struct slope *by)
 		*known = *known ? *known : derivative(symbol->value, by);
 		return *known;
 	}
-	if (symbol->delayed && follows(symbol->when, by))
-		error(symbol->at, NULL, "no derivative by %s is built of a delay", by->name);
-	if (!by->moved[symbol->number])
-		return number(node, 0);
 	struct node *made = like(node, NODE_NAME);
 	made->symbol = by->moved[symbol->number];
 	made->component = node->component;
 	made->primes = node->primes;
-	return made;
+	/* u(t - d): its slope along a ramp; where it jumps: step/derivatives.c */
+	if (symbol->delayed && symbol->hold > 0 && node->primes == 0 && follows(symbol->when, by)) {
+		made->symbol = node->symbol;
+		made->primes = 1;
+		return times(made, derivative(symbol->when, by));
+	}
+	return made->symbol ? made : number(node, 0);
 }
 
 static struct node *slope_of_name(struct node *node, const struct slope *by)
@@ -204,7 +216,7 @@ static struct node *slope_of_power(struct node *node, const struct slope *by)
 {
 	struct node *base = derivative(node->child[0], by), *exponent = node->child[1];
 	struct node *moves = derivative(exponent, by), *sum = like(node, NODE_SUM);
-	if (!is_zero_node(moves) && (by->kind != SLOPE_PARAM || !is_constant_node(node)))
+	if (!is_zero_node(moves) && (by->kind != SLOPE_PARAM || !(is_constant_node(node) || reads_states(node))))
 		error(by->at, NULL, "this derivative is not found: an exponent depends on %s",
 		      by->kind == SLOPE_PARAM ? by->name : "time");
 	if (!is_zero_node(moves))
@@ -286,6 +298,28 @@ static struct node *slope_of_clipped(struct node *node, const struct slope *by)
 	return chosen(node, x, lo, below, chosen(node, hi, x, above, inner));
 }
 
+/* Of table(x; x0, y0; x1, y1; ...): of the line from point to point on which x is, the last ones going on */
+static struct node *slope_of_table(struct node *node, const struct slope *by)
+{
+	struct node *x = node->child[0], *slope = NULL;
+	for (int i = node->children - 4; i > 0; i -= 2) {
+		struct node *const *at = &node->child[i];
+		struct node *along = like(node, NODE_SUM), *wide = like(node, NODE_SUM), *high = like(node, NODE_SUM);
+		struct node *line = like(node, NODE_SUM);
+		append(along, x, false);
+		append(along, at[0], true);
+		append(wide, at[2], false);
+		append(wide, at[0], true);
+		append(high, at[3], false);
+		append(high, at[1], true);
+		append(line, at[1], false);
+		append(line, times(quotient(high, wide), along), false);
+		line = derivative(line, by);
+		slope = slope ? chosen(node, x, at[2], line, slope) : line;
+	}
+	return slope;
+}
+
 /* (y' x - x' y)/(x^2 + y^2) */
 static struct node *slope_of_angle(struct node *node, const struct slope *by)
 {
@@ -333,6 +367,7 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_MAX:  return slope_of_extreme(node, by);
 	case FN_DEADZONE:
 	case FN_CLIP: return slope_of_clipped(node, by);
+	case FN_TABLE: return slope_of_table(node, by);
 	default:
 		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL,
 		      "this derivative would hold that of %s, which is not found", function_name(node->function));

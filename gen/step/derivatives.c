@@ -76,14 +76,39 @@ static void check_loads(const struct step *step, const struct step *made, const 
 			      column_text(&system->load[l], 0));
 }
 
-static struct step *step_of(const struct step *step, int first, int count)
+static struct step *step_by(const struct step *step, const struct request *request)
 {
-	const struct request request = request_of_derivatives(step, first, count);
-	struct model *model = model_build(parse_spec(step->model->spec->source), &request);
-	model = model ? find_tuning(model, &request) : NULL;
+	struct model *model = model_build(parse_spec(step->model->spec->source), request);
+	model = model ? find_tuning(model, request) : NULL;
 	struct step *made = model ? step_build(model) : NULL;
 	if (!made)
 		abandon();
+	model->delays = NULL;                   /* its inputs are given to it */
+	return made;
+}
+
+/* Where loads change their formula, a step from change to change, each like an event */
+static struct step *step_of_changes(const struct step *step)
+{
+	struct request request = request_of_derivatives(step, 0, 0);
+	request.again.by_regions = true;
+	request.form = FORM_AUTO;
+	struct step *made = step_by(step, &request);
+	const struct linear *own = &step->branch->system, *system = &made->branch->system;
+	bool same = own->loads == system->loads;
+	for (int l = 0; l < own->loads && same; l++)
+		same = load_alike(own, &system->load[l]) == l;
+	if (!same)
+		error(step->model->spec->sensitivity[0].at, NULL, "a sensitivity beside loads of which some act in "
+		      "outputs alone, and that change their formula in time, is not built yet");
+	made->shown = step;
+	return made;
+}
+
+static struct step *step_of(const struct step *step, int first, int count)
+{
+	const struct request request = request_of_derivatives(step, first, count);
+	struct step *made = step_by(step, &request);
 	if (!goes_apart(step))
 		check_loads(step, made, &step->model->spec->sensitivity[first]);
 	return made;
@@ -106,6 +131,31 @@ static int columns_together(const struct step *step)
 	return together > 1 ? together : 1;
 }
 
+/* A delay moves the jumps of an input, those at samples that are held, and at the first one of a ramp. */
+static void derive_delays(const struct step *step, struct derivatives *d)
+{
+	const struct delays *delays = step->model->delays;
+	struct collector collector = { .scheme = "exact" };
+	RATIONAL slope = ZERO;
+	double *late = ARRAY(double, (size_t)(d->columns * delays->count));
+	for (int p = 0; p < d->columns; p++) {
+		const struct sensitivity *by = &d->column[p];
+		if (by->symbol->kind == SYMBOL_INPUT)
+			error(by->at, NULL, "a derivative along '%s' is not built beside delayed inputs", by->name);
+		for (int k = 0; k < delays->count; k++) {
+			struct node *node = slope_of_delay(step->model->spec, by, delays->delay[k].symbol);
+			if (is_zero_node(node))
+				continue;
+			if (has_remainder(step) || step->model->switching)
+				error(by->at, NULL, "a derivative by '%s', which delays an input, is built for linear "
+				      "models", by->name);
+			collect_constant(&collector, node, slope);
+			late[p * delays->count + k] = round_rational(slope);
+			d->late = late;
+		}
+	}
+}
+
 static void derive(void *context)
 {
 	struct step *step = context;
@@ -121,9 +171,13 @@ static void derive(void *context)
 				    .apart = goes_apart(step) };
 	for (int i = 0; i < d->columns; i++)
 		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
-	if (step->model->switching) {
+	if (step->model->delays)
+		derive_delays(step, d);
+	if (!step->model->switching && loads_change(&step->model->system) && !d->apart)
+		d->regions = step_of_changes(step);
+	if (step->model->switching || d->regions) {
 		step->derivatives = d;
-		d->varied = varied_models(step);
+		d->varied = varied_models(step, d->regions ? d->regions->model : step->model);
 		return;
 	}
 	const int together = columns_together(step);

@@ -133,10 +133,12 @@ struct derivatives {
 	int columns;
 	const struct sensitivity *column;
 	bool seeded;                /* some are along inputs */
+	double *late;               /* per column and delayed input: of t - d; NULL: no delay moves */
 	bool apart;                 /* each block goes the way of its own step, beside the model */
 	int blocks;
 	struct derivative_block *block;
-	struct varied_model *varied; /* per column, of a piecewise-linear model, which has no blocks; else NULL */
+	struct varied_model *varied; /* per column, of a model that goes by regions, which has no blocks; else NULL */
+	struct step *regions;       /* of these, where the step of the model itself is none of regions; else NULL */
 };
 /* step->derivatives, where the spec or the request asks for some; false: it was said why there are none */
 bool find_derivatives(struct step *step);

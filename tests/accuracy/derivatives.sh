@@ -99,6 +99,17 @@ for name in held ramp; do
 	result $? "along an input, $name: from rest the derivative is the motion itself"
 done
 
+# By the delay of all that acts: a motion from rest is that of another time, dx/dd = -x'
+printf '%s\n' u 1 0.5 -1 2 0 -0.5 1.5 1 0 >delayed.csv
+for hold in '' ' hold first'; do
+	printf '%s\n' 'model late' 'param d = 0.1, k = 5' 'coord x' "input u$hold" "x'' + 0.4*x' + k*x = u(t - 3*d)" \
+		'sensitivity d' "output x, x', x''" 'step 0.5' >late.spec
+	"$plrun" late.spec 4 --input delayed.csv 2>log | awk -F , 'NR > 1 { print $0 >"/dev/stderr"
+		if (($5 + 3*$3)^2 > 1e-26 || ($6 + 3*$4)^2 > 1e-26 && NR > 2) bad = 1 }
+		END { exit bad || NR != 10 || $5^2 < 0.01 }' 2>>log
+	result $? "by a delay${hold}: the motion itself, earlier"
+done
+
 awk -v rest=values -f "$root/tests/cases.awk" "$root/tests/accuracy/derivatives.cases" >names || exit 99
 while read -r name; do
 	by=$(sed -n 's,^d[^/]*/d\([^ ]*\) .*,\1,p' "$name.values" | awk '!n[$0]++' | paste -s -d ,)

@@ -68,20 +68,14 @@ static bool has_values_between(const struct emitter *e)
 
 /* ---- the header ---- */
 
-void emit_derivative_declarations(const struct emitter *e)
+static bool is_around_core(const struct emitter *e)
+{
+	return e->model->delays && strcmp(e->name, e->model->delays->name) == 0;
+}
+
+static void emit_derivative_struct(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
-	const char **name = ARRAY(const char *, (size_t)d->columns);
-	for (int i = 0; i < d->columns; i++)
-		name[i] = index_name(&d->column[i]);
-	for (int b = 0; b < d->blocks && d->apart; b++)
-		emit_declarations(&e->beside[b], false);
-	open_declarations(e, format("%s_D", e->upper), "");
-	const char *words = "Derivatives by %s, a column each; by an input: along the change du of its samples.  s is "
-			    "left by $n_step_d as it is by $n_step.";
-	say_comment(e, "", spell(e, words, column_list(d)));
-	say(e, "enum { $N_D = %d };\n", d->columns);
-	emit_names_of(e, "D", name, d->columns);
 	say(e, "typedef struct $n_d $n_d;\n"
 	       "struct $n_d {\n"
 	       "    double s[$N_D][$N_STATES];  /* column by column: of %s */\n", state_list(e->step->shown->model));
@@ -98,6 +92,26 @@ void emit_derivative_declarations(const struct emitter *e)
 		say(e, "    double scale[$N_STATES];    /* the largest size of each state so far */\n");
 	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
 	       "};\n");
+}
+
+void emit_derivative_declarations(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const char **name = ARRAY(const char *, (size_t)d->columns);
+	for (int i = 0; i < d->columns; i++)
+		name[i] = index_name(&d->column[i]);
+	for (int b = 0; b < d->blocks && d->apart && !is_around_core(e); b++)
+		emit_declarations(&e->beside[b], false);
+	open_declarations(e, format("%s_D", e->upper), "");
+	const char *words = "Derivatives by %s, a column each; by an input: along the change du of its samples.  s is "
+			    "left by $n_step_d as it is by $n_step.";
+	say_comment(e, "", spell(e, words, column_list(d)));
+	say(e, "enum { $N_D = %d };\n", d->columns);
+	emit_names_of(e, "D", name, d->columns);
+	if (is_around_core(e))
+		say(e, "typedef $n_core_d $n_d;\n");
+	else
+		emit_derivative_struct(e);
 	announce(e, spell(e, "void   $n_init_d($n *s, $n_d *ds);"),
 		 spell(e, "as $n_init, and the derivatives of that state"));
 	announce(e, spell(e, "void   $n_set_d($n_d *ds, double S[$N_D][$N_STATES]);"), "any; NULL: 0");
@@ -496,6 +510,29 @@ static void emit_inputs_of_columns(const struct emitter *e)
 		emit_int_list(e, "d_input", d->columns, input);
 }
 
+static void emit_derivatives_of_sizes(const struct emitter *e, int row)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const bool around = is_around_core(e);
+	emit_sizes(e, "derivatives.h", { "STATES", e->system->states },
+		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
+		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
+		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
+		   { "BY_PHI", !around && is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi },
+		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
+		   { "SEGMENTS", row ? e->model->system.segments : 1 });
+	say_include(e, "derivatives.h");
+}
+
+/* Around a core with delayed inputs: its derivatives are those of the core. */
+void emit_derivatives_around(const struct emitter *e)
+{
+	static const char *const tables[] = { "d_initial", "d_names", "d_by", "init_beside" };
+	for (size_t i = 0; i < sizeof tables / sizeof *tables - !e->step->derivatives->apart; i++)
+		say(e, "#define $n_%s $n_core_%s\n", tables[i], tables[i]);
+	emit_derivatives_of_sizes(e, 0);
+}
+
 void emit_step_derivatives(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -523,13 +560,7 @@ void emit_step_derivatives(const struct emitter *e)
 	emit_name_list(e, "d_names", d->columns, name);
 	emit_values_of_columns(e);
 	emit_inputs_of_columns(e);
-	emit_sizes(e, "derivatives.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
-		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
-		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "BY_PHI", is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi },
-		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
-		   { "SEGMENTS", row ? e->model->system.segments : 1 });
-	say_include(e, "derivatives.h");
+	emit_derivatives_of_sizes(e, row);
 	if (!e->model->request.external)
 		return;
 	emit_sizes(e, "external.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },

@@ -98,7 +98,7 @@ static const char *note_of_slopes(const struct emitter *part)
 }
 
 /* Regions without switching functions, one in each segment of time: what the search has of those is not read. */
-static void emit_linear_tables(const struct emitter *part)
+void emit_linear_tables(const struct emitter *part)
 {
 	const struct switching *s = regions_of(part);
 	struct pieces pieces = pieces_of(part->step);

@@ -73,6 +73,8 @@ static void emit_varied_step(const struct emitter *e)
 	declare_region_vector(e);
 	emit_load_states(e, needed, true);
 	emit_region_vector(e, true);
+	if (e->step->shown->derivatives->regions)
+		say(e, "    $n_get(s, x);\n");
 	for (int p = 0; p < e->step->shown->derivatives->columns; p++) {
 		for (int l = 0; l < e->system->loads; l++)
 			if (needed[l])
@@ -88,6 +90,17 @@ static void emit_vary_call(const struct emitter *part)
 	say(part, "    $o_vary_by(s, ds%s, tau);\n", sample_arguments(part));
 }
 
+/* A linear model whose loads change: its own step is another, of the same states, loads and inputs. */
+static struct emitter emitter_of_changes(const struct emitter *e)
+{
+	struct emitter changes = *e;
+	changes.step = e->step->derivatives->regions;
+	changes.model = changes.step->model;
+	changes.system = &changes.step->branch->system;
+	changes.own = format("%s_d", e->name);
+	return changes;
+}
+
 static void each_part(const struct emitter *e, void (*emit)(const struct emitter *part))
 {
 	if (e->step->regions.parts)
@@ -98,9 +111,18 @@ static void each_part(const struct emitter *e, void (*emit)(const struct emitter
 
 void emit_all_varied(const struct emitter *e)
 {
-	each_part(e, emit_varied_step);
+	if (e->step->derivatives->regions) {
+		const struct emitter changes = emitter_of_changes(e);
+		emit_linear_tables(&changes);
+		emit_varied_step(&changes);
+	} else {
+		each_part(e, emit_varied_step);
+	}
 	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
-	each_part(e, emit_vary_call);
+	if (e->step->derivatives->regions)
+		say(e, "    $n_d_vary_by(s, ds%s, tau);\n", sample_arguments(e));
+	else
+		each_part(e, emit_vary_call);
 	close_function(e, "");
 }
 

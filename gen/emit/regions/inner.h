@@ -59,6 +59,7 @@ const char *no_variation(const struct emitter *e);                /* a last argu
 /* ---- emit_parts.c: the parts, each as it would be alone ---- */
 
 void for_parts(const struct emitter *e, int count, void (*emit)(const struct emitter *part));
+void emit_linear_tables(const struct emitter *part);              /* of one without switching functions */
 const char *start_of_search(const struct emitter *part);          /* the region where it begins */
 
 /* ---- emit_regions.c, emit_guards.c, emit_ladder.c: their tables, a step ---- */

@@ -17,7 +17,7 @@ enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cann
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
-	bool switches = segments == 1 || b->model->contacts.impacts > 0;
+	bool switches = segments == 1 || b->model->contacts.impacts > 0 || b->request->again.by_regions;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
 			const struct form *form = b->segment_equations[s].residual[i].form;

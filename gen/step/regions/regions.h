@@ -87,7 +87,8 @@ struct variation {                  /* as pl_variation has it: of all columns th
 	int entries;
 	struct varied_entry *entry;
 };
-struct varied_model *varied_models(const struct step *step); /* of each of step->derivatives; leaves the statement */
+/* of each of step->derivatives, of a model that goes by regions; leaves the statement */
+struct varied_model *varied_models(const struct step *step, const struct model *model);
 double varied_number(const struct varied_model *v, mpq_srcptr more, mpq_srcptr less); /* its derivative, rounded */
 /* of outputs, rows over x of this layout: per column and segment of time a block */
 struct variation variation_of_outputs(const struct step *step, const struct layout *x);

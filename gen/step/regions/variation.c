@@ -13,7 +13,7 @@ enum { APART = 80, LOST = 40 };     /* the param moves by 2^-80; what is smaller
 /* ---- the model elsewhere ---- */
 
 struct elsewhere_once {
-	const struct step *step;
+	const struct model *model;
 	const char *name;
 	mpq_srcptr value;
 	const struct model *found;
@@ -22,19 +22,19 @@ struct elsewhere_once {
 static void build_once(void *context)
 {
 	struct elsewhere_once *s = context;
-	struct request request = s->step->model->request;
+	struct request request = s->model->request;
 	request.again.varied = s->name;
 	request.again.value = s->value;
-	struct spec *spec = parse_spec(s->step->model->spec->source);
+	struct spec *spec = parse_spec(s->model->spec->source);
 	spec->adopted = true;                   /* units have been looked at */
 	s->found = model_build(spec, &request);
 	if (!s->found)
 		abandon();
 }
 
-static const struct model *model_at(const struct step *step, const char *name, mpq_srcptr value)
+static const struct model *model_at(const struct model *model, const char *name, mpq_srcptr value)
 {
-	struct elsewhere_once s = { .step = step, .name = name, .value = value };
+	struct elsewhere_once s = { .model = model, .name = name, .value = value };
 	return silent_guard(build_once, &s) ? s.found : NULL;
 }
 
@@ -67,9 +67,8 @@ static bool same_model(const struct model *a, const struct model *b)
 	       (!a->switching || same_regions(a->switching, b->switching));
 }
 
-static struct varied_model vary(const struct step *step, const struct sensitivity *by)
+static struct varied_model vary(const struct model *model, const struct sensitivity *by)
 {
-	const struct model *model = step->model;
 	struct varied_model v = { .more = model, .less = model };
 	RATIONAL apart = ZERO, value = ZERO;
 	mpq_init(v.apart);
@@ -83,7 +82,7 @@ static struct varied_model vary(const struct step *step, const struct sensitivit
 	for (int side = 0; side < 2; side++) {
 		mpq_t *there = rationals(1);
 		(side ? mpq_sub : mpq_add)(*there, value, apart);
-		const struct model *found = model_at(step, by->symbol->name, *there);
+		const struct model *found = model_at(model, by->symbol->name, *there);
 		if (!same_model(model, found))
 			continue;
 		*(side ? &v.less : &v.more) = found;
@@ -97,12 +96,12 @@ static struct varied_model vary(const struct step *step, const struct sensitivit
 	return v;
 }
 
-struct varied_model *varied_models(const struct step *step)
+struct varied_model *varied_models(const struct step *step, const struct model *model)
 {
 	const struct derivatives *d = step->derivatives;
 	struct varied_model *v = ARRAY(struct varied_model, (size_t)d->columns);
 	for (int i = 0; i < d->columns; i++)
-		v[i] = vary(step, &d->column[i]);
+		v[i] = vary(model, &d->column[i]);
 	return v;
 }
 
