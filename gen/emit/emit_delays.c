@@ -132,8 +132,8 @@ static void emit_moved_jumps(const struct emitter *e)
 			for (int i = 0; i < states; i++)
 				value[(p * all + d->inputs + k) * states + i] =
 					derivatives->late[p * d->count + k] * A[i * x->size + x->input[d->inputs + k]];
-	emit_array(e, "Of each column, where its param moves a delay: what a jump of each input of the core by 1 does to "
-		   "the states", "late", 3, size, value, NULL);
+	emit_array(e, "Of each column, where its param moves a delay: what a jump of each input of the core by 1 does "
+		   "to the states", "late", 3, size, value, NULL);
 }
 
 static void emit_samples_of_core(const struct emitter *e)

@@ -367,8 +367,9 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_MAX:  return slope_of_extreme(node, by);
 	case FN_DEADZONE:
 	case FN_CLIP: return slope_of_clipped(node, by);
-	case FN_TABLE: return slope_of_table(node, by);
 	default:
+		if (node->function == FN_TABLE && by->kind == SLOPE_PARAM)
+			return slope_of_table(node, by);
 		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL,
 		      "this derivative would hold that of %s, which is not found", function_name(node->function));
 	}

@@ -297,7 +297,8 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "IMPACTS", s->impacts },
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : switches ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
-		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) }, { "ALONE", !e->step->shown->regions.parts && switches },
+		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) },
+		{ "ALONE", !e->step->shown->regions.parts && switches },
 		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.is_made },
 		{ "CAPPED", capped_entries(e) }
 	};
