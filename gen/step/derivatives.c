@@ -87,6 +87,15 @@ static struct step *step_by(const struct step *step, const struct request *reque
 	return made;
 }
 
+static void check_derivable(const struct step *step)
+{
+	const struct facts facts = facts_of_step(step);
+	const struct objection against = objection_to(CAN_DERIVATIVES, &facts, step->model);
+	if (against.why)
+		error(step->model->spec->sensitivity[0].at, against.way, "%s%s", words_before(CAN_DERIVATIVES),
+		      against.why);
+}
+
 /* Where loads change their formula, a step from change to change, each like an event */
 static struct step *step_of_changes(const struct step *step)
 {
@@ -101,6 +110,7 @@ static struct step *step_of_changes(const struct step *step)
 	if (!same)
 		error(step->model->spec->sensitivity[0].at, NULL, "a sensitivity beside loads of which some act in "
 		      "outputs alone, and that change their formula in time, is not built yet");
+	check_derivable(made);
 	made->shown = step;
 	return made;
 }
@@ -160,10 +170,7 @@ static void derive(void *context)
 {
 	struct step *step = context;
 	const struct spec *spec = step->model->spec;
-	const struct facts facts = facts_of_step(step);
-	const struct objection against = objection_to(CAN_DERIVATIVES, &facts, step->model);
-	if (against.why)
-		error(spec->sensitivity[0].at, against.way, "%s%s", words_before(CAN_DERIVATIVES), against.why);
+	check_derivable(step);
 	if (has_remainder(step))
 		check_smooth(step->model);
 	struct derivatives *d = NEW(struct derivatives);
