@@ -112,16 +112,28 @@ static bool has_outputs(const struct fmu *f)
 	return false;
 }
 
-/* What is set acts in the steps that follow, so between steps outputs depend on no input; at the start on anything. */
+/* The inputs by which outputs have derivatives */
+static const char *inputs_of_outputs(const struct fmu *f)
+{
+	const char *list = "";
+	for (int i = 0; i < f->variables.count && f->derives; i++)
+		if (f->variables.variable[i].kind == FMU_INPUT)
+			list = format("%s%s%d", list, *list ? " " : "", f->version == 3 ? i : i + 1);
+	return list;
+}
+
+/* What is set acts in the steps that follow, so between steps outputs depend on no input, but for derivatives by those
+ * that acted last; at the start on anything. */
 static void print_structure(FILE *to, const struct fmu *f)
 {
+	const char *inputs = inputs_of_outputs(f);
 	fputs("  <ModelStructure>\n", to);
 	if (f->version == 3) {
-		print_outputs(to, f, "Output dependencies=\"\" valueReference");
+		print_outputs(to, f, format("Output dependencies=\"%s\" valueReference", inputs));
 		print_outputs(to, f, "InitialUnknown valueReference");
 	} else if (has_outputs(f)) {
 		fputs("    <Outputs>\n", to);
-		print_outputs(to, f, "Unknown dependencies=\"\" index");
+		print_outputs(to, f, format("Unknown dependencies=\"%s\" index", inputs));
 		fputs("    </Outputs>\n    <InitialUnknowns>\n", to);
 		print_outputs(to, f, "Unknown index");
 		fputs("    </InitialUnknowns>\n", to);
