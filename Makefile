@@ -10,8 +10,8 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang lld tcc libcmocka-dev valgrind \
 	gcc-arm-none-eabi libnewlib-arm-none-eabi qemu-system-arm libxml2-utils python3-scipy python3-pip python3-venv \
 	python3-wheel mypy octave octave-dev octave-control libopenmpi-dev openmpi-bin cmake cppcheck
 
-.PHONY: all setup deps demo-deps check-deps demo tests check quick check-merge check-long faults bench charts \
-	charts-quick charts-twice charts-page chart gallery firmware-report bare install clean
+.PHONY: all setup deps demo-deps check-deps demo tests check quick check-merge check-long check-firefox faults bench \
+	charts charts-quick charts-twice charts-page chart gallery firmware-report bare install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun libplrt.a
@@ -76,6 +76,11 @@ quick: tests
 # More compilers, boards and random models, charts, installations: before a piece of work is finished
 check-merge: tests
 	sh tests/check.sh $(BUILD) --suite merge
+
+# Pages in firefox-esr too, which is not among the packages that the tests take
+check-firefox: setup
+	ninja -C $(BUILD) plgen plrun
+	MERGE=1 FIREFOX=1 sh tests/page/page.sh $(BUILD)/plgen $(BUILD)/plrun .
 
 # What only long runs show: more random models, more seeds
 check-long: tests

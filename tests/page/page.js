@@ -12,12 +12,13 @@
  *     node page.js browse PAGE FILE [WIDTH PNG]    what the scripts of FILE come to, in a headless browser without a
  *                                                  network; then each line of its log
  *     node page.js bits PAGE...                    whether the browser's numbers have the bits of node's
+ *     node page.js firefox PAGE...                 the same of Firefox
  *     node page.js frames PAGE                     name, kB, processor time [ms] and garbage [kB] of a frame of 1000
  *                                                  steps; what went wrong
  */
 "use strict";
 const fs = require("fs"), os = require("os"), path = require("path"), {spawn} = require("child_process");
-const {gunzipSync} = require("zlib");
+const {gunzipSync} = require("zlib"), net = require("net");
 const {createHash} = require("crypto");
 
 function compressed(html, id) {
@@ -270,6 +271,66 @@ async function frames(file) {
   await browser.close();
 }
 
+/* In Firefox, headless and offline, by its Marionette: messages are LENGTH:JSON, commands [0, id, name, params].
+ * Whether all columns after 2000 steps have the bits of node's */
+async function firefox(files) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), "page.")), waiting = new Map();
+  fs.writeFileSync(path.join(folder, "user.js"), 'user_pref("network.proxy.type", 1);\n'
+    + 'user_pref("network.proxy.socks", "127.0.0.1");\nuser_pref("network.proxy.socks_port", 9);\n'
+    + 'user_pref("marionette.port", 28281);\n');
+  const process = spawn("firefox-esr", ["--headless", "--marionette", "--profile", folder], {stdio: "ignore",
+    env: {...globalThis.process.env, HOME: folder}});
+  const connect = async () => {
+    for (let turn = 0; turn < 600; turn++) {
+      const to = net.connect(28281, "127.0.0.1");
+      if (await new Promise((done) => to.once("connect", () => done(true)).once("error", () => done(false)))) return to;
+      await new Promise((done) => setTimeout(done, 100));
+    }
+    throw new Error("Firefox does not answer");
+  };
+  const socket = await connect();
+  let unread = Buffer.alloc(0);
+  socket.on("data", (data) => {
+    unread = Buffer.concat([unread, data]);
+    for (;;) {
+      const colon = unread.indexOf(":"), end = colon + 1 + Number(unread.subarray(0, Math.max(colon, 0)).toString());
+      if (colon < 0 || unread.length < end) return;
+      const message = JSON.parse(unread.subarray(colon + 1, end));
+      unread = unread.subarray(end);
+      if (Array.isArray(message)) waiting.get(message[1])(message[2] ? {error: message[2]} : message[3]);
+    }
+  });
+  const send = (name, params) => new Promise((done) => {
+    const id = waiting.size + 1, text = JSON.stringify([0, id, name, params]);
+    waiting.set(id, done);
+    socket.write(Buffer.byteLength(text) + ":" + text);
+  });
+  const value = async (script) => {
+    const made = await send("WebDriver:ExecuteScript", {script: "const page = (window.wrappedJSObject || window).page;" + script,
+                                                        args: []});
+    return made.error ? JSON.stringify(made.error) : made.value;
+  };
+  let good = files.length > 0;
+  await send("WebDriver:NewSession", {});
+  for (const file of files) {
+    await send("WebDriver:Navigate", {url: "file://" + path.resolve(file)});
+    for (let turn = 0; turn < 400 && await value("return page ? page.engine.count > 20 : false") !== true; turn++)
+      await new Promise((done) => setTimeout(done, 50));
+    const there = await value("page.run(false); page.forgetPast(); page.advance(2000);"
+      + "const all = []; for (let i = 1; i < page.engine.columns; i++) all.push(String(page.value(i))); return all;");
+    const engine = await engineOf(parts(file));
+    for (let k = 0; k < 8; k++) engine.run(250);
+    const last = 249 * engine.columns, here = Array.from(engine.rows.subarray(last + 1, last + engine.columns), String);
+    console.log(path.basename(file, ".html") + ": " + here.join(" ") + ", in Firefox " + [].concat(there).join(" "));
+    good = good && here.join() === [].concat(there).join();
+  }
+  const gone = new Promise((done) => process.on("exit", done));
+  await send("Marionette:Quit", {flags: ["eForceQuit"]});
+  await gone;
+  fs.rmSync(folder, {recursive: true, force: true});
+  return good;
+}
+
 function policy(file) {
   const html = fs.readFileSync(file, "utf8"), found = (pattern) => html.match(pattern)[1];
   const sum = (text) => "'sha256-" + createHash("sha256").update(text).digest("base64") + "'";
@@ -288,5 +349,6 @@ else if (command === "policy") process.exit(policy(rest[0]) ? 0 : 1);
 else if (command === "samples") samples(rest[0], Number(rest[1]), rest[2]);
 else if (command === "browse") browse(...rest);
 else if (command === "bits") bits(rest).then((good) => process.exit(good ? 0 : 1));
+else if (command === "firefox") firefox(rest).then((good) => process.exit(good ? 0 : 1));
 else if (command === "frames") frames(rest[0]);
 else console.log(parts(rest[0]).model.title + "\n" + parts(rest[0]).model.spec);

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # page.sh PLGEN PLRUN ROOT: pages of `plgen --page`. Their numbers are plrun's to the last bit, run by node; text of
 # the model stays text; what stands in the way is reported. With MERGE=1 ten models, and a page in a browser without a
-# network.
+# network; with FIREFOX=1 too in that one.
 set -u
 plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 plrun=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") || exit 99
@@ -312,6 +312,12 @@ END
 	node "$page" bits two_masses.html double_pendulum.html sdcsf.html linear2dof.html gear1.html stick_slip.html \
 		brake.html impact_oscillator.html bouncing_ball.html crane.html duffing.html >log 2>&1
 	result $? 'eleven models: the bits of node'
+	if [ "${FIREFOX:-0}" = 1 ]; then
+		node "$page" firefox two_masses.html double_pendulum.html sdcsf.html linear2dof.html gear1.html \
+			stick_slip.html brake.html impact_oscillator.html bouncing_ball.html crane.html duffing.html \
+			>log 2>&1
+		result $? 'eleven models in Firefox: the bits of node'
+	fi
 	cat >scripts <<'END'
 # blocked
 Promise.allSettled([fetch("https://example.org/"), import("data:text/javascript,1"), new Promise((done, fail) => {
