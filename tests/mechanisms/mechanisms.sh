@@ -297,4 +297,29 @@ done | awk -F , '{ for (i = 1; i <= NF; i++) { d = $i - was[i]; was[i] = $i
 	END { print "radau is off taylor by " sqrt(worst)
 	      exit !(NR == 2 && was[1] == 0.5 && sqrt(worst) < 1e-7) }' >>log
 result $? 'a chain at rest with contacts, by radau'
+# Long runs: the energy of chains of 2 and 3 links over 2,500,000 expansions, of 10 over 500,000, relative to where it
+# starts; a constraint and its rate over 10,000,000 expansions
+if long; then
+	while read -r links start until step bound <&3; do
+		sed -e "s/q\[10\]/q[$links]/; s/^init.*/init q = [$start]/; /^output/d" "$root/models/chain.spec" >chain.spec
+		printf 'output energy\nscheme taylor 24\n' >>chain.spec
+		"$plrun" --step "$step" chain.spec "$until" --every 100 2>>log | awk -F , -v bound="$bound" '
+			NR == 2 { start = $2 }
+			NR > 2 { d = $2/start - 1; worst = d*d > worst*worst ? d : worst }
+			END { print NR " rows, the energy is off by " worst ", at most " bound
+			      exit !(NR > 10 && worst*worst < bound*bound) }' >log
+		result $? "the energy of a chain of $links links, $until s"
+	done 3<<-END
+		2 1;1.1 50000 0.02 1e-13
+		3 1;1.1;1.2 50000 0.02 1e-13
+		10 1;1.1;1.2;1.3;1.4;1.5;1.6;1.7;1.8;1.9 1000 0.002 1e-11
+	END
+	sed '/^output/d; /^tolerance/d' "$cases/pendulum_cartesian.spec" >rod.spec
+	printf 'output miss = x^2 + y^2 - 1, rate = x*x'"'"' + y*y'"'"'\nscheme taylor 22\n' >>rod.spec
+	"$plrun" --step 0.02 rod.spec 200000 --every 20 2>>log | awk -F , '
+		NR > 1 { miss = $2*$2 > miss*miss ? $2 : miss; rate = $3*$3 > rate*rate ? $3 : rate }
+		END { print NR " rows, the constraint is missed by " miss ", its rate by " rate ", at most 1e-15, 4e-15"
+		      exit !(NR > 9000 && miss*miss < 1e-30 && rate*rate < 1.6e-29) }' >log
+	result $? 'a constraint over 10,000,000 expansions'
+fi
 tap_end
