@@ -301,7 +301,8 @@ result $? 'a chain at rest with contacts, by radau'
 # starts; a constraint and its rate over 10,000,000 expansions
 if long; then
 	while read -r links start until step bound <&3; do
-		sed -e "s/q\[10\]/q[$links]/; s/^init.*/init q = [$start]/; /^output/d" "$root/models/chain.spec" >chain.spec
+		sed "s/q\[10\]/q[$links]/; s/^init.*/init q = [$start]/; /^output/d" "$root/models/chain.spec" \
+			>chain.spec
 		printf 'output energy\nscheme taylor 24\n' >>chain.spec
 		"$plrun" --step "$step" chain.spec "$until" --every 100 2>>log | awk -F , -v bound="$bound" '
 			NR == 2 { start = $2 }
