@@ -559,6 +559,7 @@ static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
     PL_INSTANCES *const b = (PL_INSTANCES *)to;
     PL(coeffs) c = PL(nominal);
     PL_TYPE one;
+    size_t i;
     int status = PL(retune)(&c, params, c.h);
     if (status == 0) {
         status = PL(batch_use)(b, j, &c);
@@ -568,6 +569,9 @@ static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
         PL(use)(&one, &c);
         PL(out)(&one, out);
         PL(use)(&b->shared, &c);
+    }
+    for (i = 0; i < PL_OUTPUTS && status == 0 && b->peak; i++) {
+        b->peak[i * b->count + j] = pl_magnitude(out[i]);
     }
     return status;
 }

@@ -582,7 +582,7 @@ typedef struct pl_model {
 } pl_model;
 
 /* NAME_many, by which programs step instances of any model side by side by NAME_batch: tunable params differ. b is a
- * NAME_instances; y has `rows`, factors `factors` and peak `outputs` times `count` entries, peak may be NULL. */
+ * NAME_instances; y has `rows`, factors `factors` and peak, NULL where no output is one, `outputs` times `count`. */
 typedef struct pl_many {
     size_t size;       /* of NAME_instances [bytes] */
     int rows, factors; /* numbers of an instance */

@@ -8,7 +8,7 @@
 struct lanes {
 	const struct machine *machine;
 	size_t count;
-	void *b, *y, *factors;                  /* as NAME_many takes them; in float of a model in float, as these: */
+	void *b, *y, *factors, *peak;           /* as NAME_many takes them; in float of a model in float, as these: */
 	void *u, *params, *out;
 	double *wide;                           /* outputs of some steps, a row of all instances for each */
 };
@@ -30,14 +30,15 @@ static struct lanes lanes_new(const struct machine *m, size_t count)
 	l.b = need(calloc(1, m->single ? m->manyf->size : m->many->size));
 	l.y = need(calloc(rows * count, real));
 	l.factors = need(calloc(factors * count, real));
+	l.peak = need(calloc(outputs * count, real));
 	l.u = need(calloc(STEPS_AT_ONCE * (size_t)m->inputs + 1, real));
 	l.params = need(calloc((size_t)m->params, real));
 	l.out = need(calloc(STEPS_AT_ONCE * outputs * count, real));
 	l.wide = m->single ? need(calloc(STEPS_AT_ONCE * outputs * count, sizeof *l.wide)) : l.out;
 	if (m->single)
-		m->manyf->init(l.b, count, l.y, l.factors, NULL);
+		m->manyf->init(l.b, count, l.y, l.factors, l.peak);
 	else
-		m->many->init(l.b, count, l.y, l.factors, NULL);
+		m->many->init(l.b, count, l.y, l.factors, l.peak);
 	return l;
 }
 
@@ -46,6 +47,7 @@ static void lanes_free(struct lanes *l)
 	free(l->b);
 	free(l->y);
 	free(l->factors);
+	free(l->peak);
 	free(l->u);
 	free(l->params);
 	free(l->out);

@@ -63,7 +63,7 @@ input u hold first
 x'' + c*(2*x' - y') + k*(2*x - y) = cos(5*t) + u
 y'' + c*(y' - x') + k*(y - x) = 0
 init x = 0.01
-output x, acc = y'', thrust = k*x + u
+output x, acc = y'', thrust = k*x + u, worst = peak(k*y)
 step 0.01
 X
 sed '1s/.*/u/' road.csv >u.csv
