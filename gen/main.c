@@ -9,6 +9,7 @@
 #include "report/campbell.h"
 #include "report/report.h"
 #include "run/run.h"
+#include "step/cost.h"
 #include "step/linear/images.h"
 
 #include <limits.h>
@@ -278,9 +279,10 @@ static bool choose_sampling(struct work *w)
 	return true;
 }
 
-static bool choose(struct work *w)
+static bool choose_of_needs(struct work *w)
 {
-	if (!w->step || (w->spec->required.needs == 0 && !w->spec->required.budget.instructions))
+	const struct budget *budget = &w->spec->required.budget;
+	if (!w->step || (w->spec->required.needs == 0 && (!budget->instructions || budget->worst)))
 		return true;
 	if (w->options.request.step_open && lacks_step(w))
 		return false;
@@ -288,6 +290,16 @@ static bool choose(struct work *w)
 		return choose_sampling(w);
 	w->step = choose_step(w->model, w->stepped, &w->options.request);
 	return w->step;
+}
+
+static void check_budget(void *step)
+{
+	check_worst(step);
+}
+
+static bool choose(struct work *w)
+{
+	return choose_of_needs(w) && (!w->step || statement_guard(check_budget, w->step));
 }
 
 /* Of what is printed the C and its header have derivatives. */

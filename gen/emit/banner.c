@@ -159,6 +159,11 @@ static void banner_board(const struct emitter *e)
 		    two_digits(instructions_of_program(e->step)));
 	else
 		say(e, " * plgen --explain counts its instructions on a Cortex-M4.\n");
+	if (unbounded_text(e->step))
+		banner_sentence(e, "There is no bound on the instructions of a step: %s.", unbounded_text(e->step));
+	else
+		banner_sentence(e, "No step takes more instructions, while no number is subnormal, than %s.",
+				worst_text(e->step));
 }
 
 static void banner_cost(const struct emitter *e)

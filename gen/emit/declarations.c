@@ -5,6 +5,7 @@
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"
+#include "step/cost.h"
 
 /* One declaration, its comment at a common column. */
 void announce(const struct emitter *e, const char *text, const char *comment)
@@ -217,6 +218,21 @@ void emit_counts(const struct emitter *e, int inputs)
 	    e->model->outputs);
 }
 
+/* The bound of the target that the C is compiled for */
+static void emit_worst(const struct emitter *e)
+{
+	static const char *const condition[] = { "elif defined __arm__", "elif defined __arm__ && defined __ARM_FP",
+						 "if defined __arm__ && defined __ARM_FP && (__ARM_FP & 8)" };
+	if (unbounded_text(e->step))
+		return;
+	say(e, "/* Instructions that no step takes more of, while no number is subnormal; arm-none-eabi-gcc -O2 */\n");
+	for (int t = 2; t >= 0; t--)
+		say(e, "#%s\n"
+		       "#define $N_STEP_MAX %.0f  /* %s */\n",
+		    condition[t], worst_of_step(e->step, t, e->model->request.single), worst_target(t));
+	say(e, "#endif\n\n");
+}
+
 void emit_declarations(const struct emitter *e, bool rhs)
 {
 	open_declarations(e, e->upper, e->model->request.single ? "#define PL_FLOAT_ONLY\n#include \"plrt.h\"\n\n"
@@ -225,6 +241,7 @@ void emit_declarations(const struct emitter *e, bool rhs)
 	emit_if_any(e->prints->constants, e);
 	emit_index_names(e);
 	say(e, "#define $N_H %s  /* step [s] */\n\n", shortest(round_rational(e->model->h)));
+	emit_worst(e);
 	emit_if_any(e->prints->types, e);
 	emit_held_types(e);
 	emit_state_struct(e);

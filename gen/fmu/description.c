@@ -208,11 +208,17 @@ static void print_logging(FILE *to)
 
 /* ---- the two versions ---- */
 
+/* Of the model, as an attribute */
+static const char *bound_text(const struct fmu *f)
+{
+	return f->worst ? format(" description=\"No step takes more instructions than %s.\"", f->worst) : "";
+}
+
 static void print_head_2(FILE *to, const struct fmu *f)
 {
 	fprintf(to, "<fmiModelDescription fmiVersion=\"2.0\" modelName=\"%s\" guid=\"%s\" license=\"MIT-0\" "
-		    "generationTool=\"plgen " PLGEN_VERSION "\" variableNamingConvention=\"flat\">\n",
-		attribute_text(f->title), f->token);
+		    "generationTool=\"plgen " PLGEN_VERSION "\" variableNamingConvention=\"flat\"%s>\n",
+		attribute_text(f->title), f->token, bound_text(f));
 	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canHandleVariableCommunicationStepSize=\"false\" "
 		    "canNotUseMemoryManagementFunctions=\"true\" canGetAndSetFMUstate=\"true\" "
 		    "canSerializeFMUstate=\"true\"%s>\n"
@@ -227,7 +233,7 @@ static void print_head_3(FILE *to, const struct fmu *f)
 {
 	fprintf(to, "<fmiModelDescription fmiVersion=\"3.0\" modelName=\"%s\" instantiationToken=\"%s\" "
 		    "license=\"MIT-0\" generationTool=\"plgen " PLGEN_VERSION "\" "
-		    "variableNamingConvention=\"flat\">\n", attribute_text(f->title), f->token);
+		    "variableNamingConvention=\"flat\"%s>\n", attribute_text(f->title), f->token, bound_text(f));
 	fprintf(to, "  <CoSimulation modelIdentifier=\"%s\" canGetAndSetFMUState=\"true\" "
 		    "canSerializeFMUState=\"true\" canHandleVariableCommunicationStepSize=\"false\" "
 		    "fixedInternalStepSize=\"%s\"%s%s/>\n", f->name, shortest(f->h),

@@ -2,6 +2,7 @@
 /* The files of an FMU and their order. */
 #include "fmu/fmu.h"
 #include "model/tunable/tuning.h"
+#include "step/cost.h"
 #include "step/step.h"
 
 #include <string.h>
@@ -153,6 +154,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	f->single = model->request.single;
 	f->name = outer_name(model);
 	f->title = model->spec->name;
+	f->worst = unbounded_text(step) ? NULL : worst_text(step);
 	f->h = nearest_double(outer_step(model));
 	f->math = strstr(code, "\n#include <math.h>\n") != NULL;
 	f->crosses = strstr(header, format("\nuint64_t %s_crossed(", f->name)) != NULL;

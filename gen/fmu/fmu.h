@@ -52,6 +52,7 @@ struct fmu {
 	int version;                /* 2 or 3 */
 	const char *name;           /* of the model: its identifier */
 	const char *title;          /* the spec's name for it */
+	const char *worst;          /* the most instructions of a step; NULL: there is no bound */
 	const char *token;          /* instantiationToken, guid */
 	bool single;                /* it is in float */
 	double h;

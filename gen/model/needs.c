@@ -128,6 +128,8 @@ static void find_budget(void *context)
 	struct model *model = context;
 	const struct budget *budget = &model->spec->required.budget;
 	RATIONAL instructions = ZERO;
+	if (budget->worst)                      /* step/worst.c */
+		return;
 	if (model->needs.requirements == 0)
 		error(budget->at, "need OUTPUT within BOUND until END",
 		      "a budget stands beside a need: there is none");

@@ -270,10 +270,11 @@ struct need {                       /* need OUTPUT within BOUND [%] until END [f
 	int inputs;
 	struct need_input *input;
 };
-struct budget {                     /* budget N instructions on TARGET */
+struct budget {                     /* budget N instructions on TARGET [for the worst step] */
 	struct place at;
 	struct node *instructions;  /* NULL: there is none */
 	struct token target;
+	bool worst;                 /* of any step, by its bound */
 };
 struct requested_scheme {
 	struct node *step;

@@ -264,7 +264,7 @@ void read_need(struct parser *p)
 	*MORE(p->own->required.need, p->own->required.needs) = need;
 }
 
-/* budget: budget expression instructions on TARGET; a target has hyphens in its name */
+/* budget: budget expression instructions on TARGET [for the worst step]; a target has hyphens in its name */
 void read_budget(struct parser *p)
 {
 	struct budget *budget = &p->own->required.budget;
@@ -276,10 +276,17 @@ void read_budget(struct parser *p)
 	expect_word(p, "on");
 	if (p->token.kind != TOKEN_NAME || p->token.primes > 0)
 		unexpected(p, "a target: cortex-m4 or cortex-m0");
-	*budget = (struct budget){ at, instructions, p->token };
-	size_t from = p->token.at.offset;
-	while (p->token.kind != TOKEN_END)
+	*budget = (struct budget){ .at = at, .instructions = instructions, .target = p->token };
+	const size_t from = p->token.at.offset;
+	while (p->token.kind != TOKEN_END && !(p->token.kind == TOKEN_NAME && strcmp(p->token.name, "for") == 0))
 		take(p);
 	budget->target.name = text_between(budget->target.at, p->end);
 	budget->target.length = p->end.offset - from;
+	budget->worst = take_word(p, "for");
+	if (budget->worst) {
+		expect_word(p, "the");
+		expect_word(p, "worst");
+		expect_word(p, "step");
+		expect_end(p);
+	}
 }

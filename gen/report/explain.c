@@ -10,6 +10,7 @@
 #include "step/linear/images.h"
 #include "step/exponential/normal.h"
 #include "step/tunable/tuned.h"
+#include "step/cost.h"
 
 #include <string.h>
 
@@ -115,6 +116,11 @@ static void text_operations(FILE *to, const struct step *step)
 static void text_board(FILE *to, const struct step *step)
 {
 	const struct board_cost *b = step->board;
+	if (unbounded_text(step))
+		fprintf(to, "There is no bound on the instructions of a step: %s.\n", unbounded_text(step));
+	else
+		fprintf(to, "No step takes more instructions, while no number is subnormal, than %s.\n",
+			worst_text(step));
 	if (!b || b->why)
 		return;
 	fprintf(to, "On a Cortex-M4, %s: about %s instructions a step, %s at most, by the operations of %d steps "

@@ -131,6 +131,19 @@ static void json_tuning(FILE *to, const struct tuning *t)
 }
 
 /* A step; beside it what refreshes, peaks, blocks of rows and forced parts take */
+/* The most instructions of a step on each target, or why there is no bound */
+static void json_worst(FILE *to, const struct step *step)
+{
+	if (unbounded_text(step)) {
+		fprintf(to, ",\n    \"unbounded\": \"%s\"", unbounded_text(step));
+		return;
+	}
+	for (int t = 0; worst_target(t); t++)
+		fprintf(to, "%s\"%s\": %.0f", t ? ", " : ",\n    \"worst\": {", worst_target(t),
+			worst_of_step(step, t, step->model->request.single));
+	fputs("}", to);
+}
+
 static void json_cost(FILE *to, const struct step *step)
 {
 	const struct program *program = step->program;
@@ -153,6 +166,7 @@ static void json_cost(FILE *to, const struct step *step)
 		fprintf(to, ",\n    \"board\": {\"target\": \"cortex-m4\", \"instructions\": %.3g, \"most\": %.3g, "
 			"\"steps\": %d, \"bytes\": %ld}", step->board->mean, step->board->most, step->board->steps,
 			step->board->bytes);
+	json_worst(to, step);
 	if (step->rows)
 		fprintf(to, ",\n    \"rows\": {\"count\": %d, \"numbers\": %d}", step->rows->count,
 			row_numbers(step));

@@ -1,0 +1,128 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# worst.sh PLGEN SOURCE_ROOT: the longest step that a search finds on emulated boards (worst.c), against the bound that
+# --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it. The models are not those to which the
+# bound was fitted. With --table: the table of doc/firmware.md instead.
+set -u
+table=
+[ "$1" != --table ] || { table=1; shift; }
+case $1 in /*) plgen=$1 ;; *) plgen=$PWD/$1 ;; esac
+root=$(cd "$2" && pwd) || exit 99
+firmware=$root/tests/firmware
+. "$root/tests/tap.sh"
+. "$firmware/boards.sh"
+if ! boards_installed; then
+    echo '1..0 # SKIP no arm-none-eabi-gcc, or no qemu-system-arm'
+    exit 0
+fi
+work=$(mktemp -d "${TMPDIR:-/tmp}/worst.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+cd "$work" || exit 99
+
+# What the boards share, once for each; of the runtime what linear steps call
+calls=$(ls "$root"/runtime/*.c | grep -Ev '/(crossings|guards|event|region|retune|peak)')
+prepare() {
+    for b; do
+        board "$b"
+        mkdir "$b"
+        # shellcheck disable=SC2086
+        (cd "$b" && $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -fcallgraph-info=su -c \
+            $calls "$firmware/start.c" "$firmware/semihosting.c" \
+            "$firmware/digits.c" && $arm-ar rcD runtime.a ./*.o)
+    done
+}
+
+# A chain of masses, from one end to the other: chain N DAMPING
+chain() {
+    awk -v n="$1" -v c="$2" 'BEGIN {
+        print "model chain\ncoord q[" n "]\ninit q[1] = 1"
+        for (i = 1; i <= n; i++)
+            print "q[" i "]\47\47 + " c "*q[" i "]\47 + 2*q[" i "]" (i > 1 ? " - q[" i - 1 "]" : "") \
+                (i < n ? " - q[" i + 1 "]" : "") " = 0"
+        print "step 0.05" }'
+}
+
+# search BOARD REAL SPEC [OPTION ...]: usual, largest, bound, stack. The clock of -icount shift=10 has 1024 ns an
+# instruction, that of SysTick 40 ns a tick, of the M0's board 62.5.
+search() {
+    b=$1
+    real=$2
+    spec=$3
+    shift 3
+    board "$b"
+    target=cortex-$(echo "${b%f}")
+    option=-DREAL_DOUBLE
+    [ "$real" = double ] || option=-DREAL_FLOAT
+    # shellcheck disable=SC2086
+    "$plgen" --real "$real" --prefix counted "$@" -o model.c "$spec" 2>log &&
+        "$plgen" --real "$real" --prefix counted "$@" --explain=json "$spec" >told 2>>log &&
+        $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -include model.h \
+            -fcallgraph-info=su -c "$firmware/worst.c" model.c >>log 2>&1 &&
+        link image.elf model.o worst.o "$b/runtime.a" -lm >>log 2>&1 &&
+        emulate 300 image.elf -icount shift=10,align=off,sleep=off >out 2>>log
+    stack=$(awk -f "$firmware/stack.awk" model.ci "$b"/*.ci 2>/dev/null | awk '$1 == "counted_step" { print $3 }')
+    tail -n 1 out | cat - told | awk -v target="\"$target\":" -v stack="${stack:-0}" -v m0="$b" '
+        NR == 1 { scale = m0 == "m0" ? 16.384 : 25.6; usual = $1 / scale; largest = $2 / scale; header = $3 }
+        /"worst"/ { gsub(/[{},]/, " "); for (i = 1; i < NF; i++) if ($i == target) bound = $(i + 1) }
+        END { printf "%.0f %.0f %d %d %d\n", usual, largest, bound, header, stack }'
+}
+
+# found NAME BOARD REAL SPEC [OPTION ...]
+found() {
+    name=$1
+    shift
+    set -- "$@"
+    # shellcheck disable=SC2046
+    search "$@" >line
+    read -r usual largest bound header _ <line
+    [ "$largest" -le "$bound" ] && [ $((largest * 10)) -ge $((bound * 7)) ] && [ "$bound" = "$header" ]
+    result $? "$name, $1, $2: $usual usual, $largest at most, bound $bound, in the header $header"
+}
+
+if [ -n "$table" ]; then
+    prepare m0 m4f m7
+    echo '|model|type|M0: usual|largest|bound|stack|M4F: usual|largest|bound|stack|M7: usual|largest|bound|stack|'
+    echo '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|'
+    for model in axle building drivetrain frame linear2dof quarter_car rotor scs sdcs sdcsf street tuned_floor; do
+        for real in double float; do
+            row="|$model|$real|"
+            for b in m0 m4f m7; do
+                search $b $real "$root/models/$model.spec" >line
+                read -r usual largest bound _ stack <line
+                row="$row$usual|$largest|$bound|$stack|"
+            done
+            echo "$row"
+        done
+    done
+    exit 0
+fi
+prepare m0 m4f m7
+chain 2 0.02 >two.spec
+chain 6 0.02 >six.spec
+chain 14 0.02 >fourteen.spec
+cat >loads.spec <<'END'
+model loads
+coord x, z, y
+input u hold first
+init x = 1
+x'' + 0.3*x' + 40*x - z - 0.1*z' = 2*u
+z'' + 0.3*z' + 140*z - x - y = 0
+y'' + 0.2*y' + 30*y - z = 4*cos(11*t)
+step 0.01
+END
+while read -r b real spec options; do
+    # shellcheck disable=SC2086
+    found "$spec $options" "$b" "$real" "$spec.spec" $options
+done <<'END'
+m0 double two
+m0 float loads
+m4f double loads
+m4f float two
+m4f float six --accuracy compensated
+m4f float fourteen
+m7 double six
+m7 double loads --form direct
+m7 float fourteen
+END
+tap_end
