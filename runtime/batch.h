@@ -20,7 +20,7 @@
  *
  *     PL_EVENTS                      1: PL(lanes_step) leaves lanes that may have an event in the step as they are, and
  *                                    says which it has stepped; behind the states y has the region
- *     PL_OUT_ALONE                   1: of these, outputs are those of NAME_out
+ *     PL_LANES_PAY, PL_OUT_ALONE     of these, how many lanes pay; 1: outputs are those of NAME_out
  *
  * and where there are outputs that are the largest of something (peaks.h)
  *
@@ -116,16 +116,6 @@ PL_LANES_INLINE void PL(lanes_give)(PL_INSTANCES *b, size_t j, const pl_lanes *y
     PL_LANES_UNROLL
     for (i = 0; i < PL_OUTPUTS; i++) {
         pl_lanes_store(b->peak + i * b->count + first, peak[i], left);
-    }
-}
-
-/* The larger of each */
-PL_LANES_INLINE void PL(lanes_widen)(pl_lanes *most, const pl_lanes *value, const int count)
-{
-    int i;
-    PL_LANES_UNROLL
-    for (i = 0; i < count; i++) {
-        most[i] = pl_lanes_peak(most[i], value[i]);
     }
 }
 
@@ -462,6 +452,9 @@ static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, rea
 static void PL(batch_go)(PL_INSTANCES *b, PL(ahead) *ahead, real *out)
 {
     size_t first = 0;
+#if PL_EVENTS
+    first = PL(all_alone)(b, ahead, out);
+#endif
 #if PL_PEAKS > 0
     for (; out && first < b->count; first += PL_AT_ONCE) {
         PL(batch_one_by_one)(b, first, ahead, out);

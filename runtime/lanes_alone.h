@@ -15,6 +15,16 @@ PL_LANES_INLINE void PL(set_lane)(pl_lanes *all, size_t l, real one)
     memcpy((char *)all + l * sizeof one, &one, sizeof one);
 }
 
+/* The larger of each */
+PL_LANES_INLINE void PL(lanes_widen)(pl_lanes *most, const pl_lanes *value, const int count)
+{
+    int i;
+    PL_LANES_UNROLL
+    for (i = 0; i < count; i++) {
+        most[i] = pl_lanes_peak(most[i], value[i]);
+    }
+}
+
 /* Outputs of the instances from j on */
 PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_lanes *value, real *out)
 {
@@ -246,6 +256,46 @@ static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahea
     }
 }
 #endif
+
+/* Each instance by itself over the steps ahead: with few lanes that takes less. */
+static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, real *out)
+{
+    const real *u = ahead->u;
+    PL_TYPE one;
+    size_t k, i;
+    memcpy(&one, ahead->head[0], sizeof ahead->head[0]);
+    PL(contact_read)(b, j, &one);
+    for (i = 0; i < PL_STATES; i++) {
+        one.y[i] = b->y[i * b->count + j];
+    }
+    for (k = 0; k < ahead->steps; k++) {
+        PL(step)(&one PL_GIVEN);
+        u += PL_INPUTS;
+        if (out || b->peak) {
+            real now[PL_OUTPUTS];
+            PL(out)(&one, now);
+            for (i = 0; i < PL_OUTPUTS; i++) {
+                if (out) {
+                    out[(k * PL_OUTPUTS + i) * b->count + j] = now[i];
+                }
+                if (b->peak) {
+                    b->peak[i * b->count + j] = pl_larger_size(b->peak[i * b->count + j], now[i]);
+                }
+            }
+        }
+    }
+    (void)u;
+    PL(batch_give)(b, j, &one);
+}
+
+static size_t PL(all_alone)(PL_INSTANCES *b, const PL(ahead) *ahead, real *out)
+{
+    size_t j = 0;
+    for (; PL_AT_ONCE < PL_LANES_PAY && j < b->count; j++) {
+        PL(each_alone)(b, j, ahead, out);
+    }
+    return j;
+}
 #endif
 
 /* ---- for kernels: what instances share ---- */

@@ -113,6 +113,9 @@
 #ifndef PL_COMPENSATED
 #define PL_COMPENSATED 0
 #endif
+#ifndef PL_LANES_PAY
+#define PL_LANES_PAY 0
+#endif
 #ifndef PL_LARGEST
 #define PL_LARGEST 0
 #endif

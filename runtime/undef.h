@@ -165,6 +165,7 @@
 #undef PL_LANES
 #undef PL_LARGE
 #undef PL_LARGEST
+#undef PL_LANES_PAY
 #undef PL_LARGER
 #undef PL_LATE
 #undef PL_LEADS

@@ -107,6 +107,7 @@ END
 for spec in stops.spec rubs.spec; do
     specs=$work agrees 0 "$run_cc" '' "$spec"
     specs=$work agrees 0 "${CC:-cc} -std=c99" '-O1 -ffp-contract=off' "$spec"
+    specs=$work agrees 0 "${CC:-cc} -std=c99" '-O1 -march=native -ffp-contract=off' "$spec"
     ! grep -q 'by itself:' m.h
     result $? "$spec: its steps without events are in lanes"
 done

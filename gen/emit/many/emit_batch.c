@@ -5,6 +5,7 @@
 #include "emit/regions/regions.h"
 #include "emit/state.h"
 #include "emit/steps.h"
+#include "model/contacts/contacts.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 
@@ -234,7 +235,9 @@ static void emit_include(const struct batch *b)
 	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
 		   { "ROWS", has_regions(e) ? 0 : rows_of(e) }, { "EVENTS", has_regions(e) },
-		   { "OUT_ALONE", b->out_alone }, { "SHARES", !has_regions(e) && !has_peaks(e) },
+		   { "OUT_ALONE", b->out_alone },
+		   { "SHARES", !has_regions(e) && !has_peaks(e) },
+		   { "LANES_PAY", !has_regions(e) ? 0 : has_events(e->model->switching) ? 3 : 2 },
 		   { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
