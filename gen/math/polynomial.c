@@ -288,3 +288,119 @@ bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact)
 		t->survivor = first->survivor = first->survivor ? first->survivor : find_survivors(first);
 	return (!cycle || t->survivor[i * t->n + j]) && polynomial_entry(t, i, j, N, state, cycle, exact);
 }
+
+/* ---- rational at this time alone ---- */
+
+/* det (s - d A) over Z without repeated factors, d the common denominator of A's entries, which is `scale` then */
+static struct poly square_free_polynomial(const struct taylor *t, mpz_ptr scale)
+{
+	struct polymat P = { t->n, ARRAY(struct poly, (size_t)(t->n * t->n)) };
+	struct poly det;
+	mpz_set_ui(scale, 1);
+	for (int i = 0; i < t->n * t->n; i++)
+		mpz_lcm(scale, scale, mpq_denref(t->A[i]));
+	for (int i = 0; i < t->n * t->n; i++) {
+		struct poly *cell = &P.cell[i];
+		*cell = poly_new(2);
+		mpz_divexact(cell->c[0], scale, mpq_denref(t->A[i]));
+		mpz_mul(cell->c[0], cell->c[0], mpq_numref(t->A[i]));
+		mpz_neg(cell->c[0], cell->c[0]);
+		mpz_set_ui(cell->c[1], i / t->n == i % t->n);
+		poly_trim(cell);
+	}
+	polymat_adjugate(P, &det, NULL);
+	return poly_divide(det, poly_gcd(det, poly_derivative(det)));
+}
+
+/* p(X) by Horner's rule */
+static mpq_t *polynomial_of_matrix(int n, struct poly p, const mpq_t *X)
+{
+	mpq_t *value = rationals((size_t)(n * n));
+	RATIONAL c = ZERO;
+	for (int k = p.length - 1; k >= 0; k--) {
+		mpq_t *next = rationals((size_t)(n * n));
+		rational_product(n, n, n, value, X, next);
+		mpq_set_z(c, p.c[k]);
+		for (int i = 0; i < n; i++)
+			mpq_add(next[i * n + i], next[i * n + i], c);
+		clear_rationals(&value);
+		value = next;
+	}
+	return value;
+}
+
+/* What of A can be made diagonal: S = A - N, both polynomials of A, N nilpotent. Newton's method for a root of the
+ * polynomial that S has, from A (Chevalley). */
+static mpq_t *diagonalizable_part(const struct taylor *t)
+{
+	const int n = t->n;
+	const size_t cells = (size_t)n * (size_t)n;
+	INTEGER scale = INTEGER_ZERO;
+	const struct poly p = square_free_polynomial(t, scale);
+	mpq_t *S = rationals(cells), *correction = rationals(cells), *inverse = rationals(cells);
+	RATIONAL d = ZERO;
+	int column;
+	mpq_set_z(d, scale);
+	for (size_t i = 0; i < cells; i++)
+		mpq_mul(S[i], t->A[i], d);
+	for (mpq_t *rest; rest = polynomial_of_matrix(n, p, S), !rationals_zero(cells, rest);) {
+		rational_inverse(n, polynomial_of_matrix(n, poly_derivative(p), S), inverse, &column);
+		rational_product(n, n, n, rest, inverse, correction);
+		for (size_t i = 0; i < cells; i++)
+			mpq_sub(S[i], S[i], correction[i]);
+	}
+	for (size_t i = 0; i < cells; i++)
+		mpq_div(S[i], S[i], d);
+	return S;
+}
+
+/* e^{N tau}: a sum that ends */
+static mpq_t *nilpotent_exponential(const struct taylor *t, const mpq_t *S)
+{
+	const int n = t->n;
+	const size_t cells = (size_t)n * (size_t)n;
+	mpq_t *N = rationals(cells), *sum = rationals(cells), *term = rationals(cells);
+	RATIONAL by = ZERO;
+	for (int i = 0; i < n; i++)
+		mpq_set_ui(term[i * n + i], 1, 1);
+	for (int k = 1; !rationals_zero(cells, term); k++) {
+		mpq_t *next = rationals(cells);
+		mpq_set_ui(by, 1, (unsigned long)k);
+		mpq_mul(by, by, t->tau);
+		for (size_t i = 0; i < cells; i++) {
+			mpq_add(sum[i], sum[i], term[i]);
+			mpq_sub(N[i], t->A[i], S[i]);
+			mpq_mul(N[i], N[i], by);
+		}
+		rational_product(n, n, n, term, N, next);
+		term = next;
+	}
+	return sum;
+}
+
+static void weigh(const mpq_t *F, int n, int count, const struct taylor_place *place, mpq_ptr sum)
+{
+	mpq_set_ui(sum, 0, 1);
+	for (int k = 0; k < count; k++)
+		rational_addmul(sum, place[k].weight, F[place[k].row * n + place[k].column]);
+}
+
+/* e^{A tau} = e^{S tau} e^{N tau}. Lindemann and Weierstrass: e^{p tau} of the distinct eigenvalues p of S are
+ * independent over the algebraic numbers, so a sum of entries is rational only where those of S^k e^{N tau}, k > 0, are
+ * all 0: then it is that of e^{N tau}. */
+bool taylor_rational(struct taylor *t, int count, const struct taylor_place *place, mpq_ptr exact)
+{
+	const int n = t->n;
+	mpq_t *S = diagonalizable_part(t), *F = nilpotent_exponential(t, S);
+	RATIONAL sum = ZERO;
+	bool rational = true;
+	weigh(F, n, count, place, exact);
+	for (int k = 1; k <= n && rational; k++) {
+		mpq_t *next = rationals((size_t)(n * n));
+		rational_product(n, n, n, S, F, next);
+		F = next;
+		weigh(F, n, count, place, sum);
+		rational = mpq_sgn(sum) == 0;
+	}
+	return rational;
+}

@@ -256,7 +256,7 @@ static void compare_roads(const struct step *step)
     const struct linear *system = &step->branch->system;
     const struct layout *layout = &step->layout;
     const int n = system->states, columns = step->branch->full->columns;
-    if (n > LIMIT_RESIDUE_STATES || system->heldK)
+    if (n > FEW_STATES || system->heldK)
         return;
     struct taylor *taylor = taylor_of(layout->size, (const mpq_t *)augmented_matrix(layout, system, 0), step->model->h);
     for (int i = 0; i < n; i++) {
