@@ -73,7 +73,7 @@ enum {
 	LIMIT_FREQUENCIES = 100000, /* rows of --response */
 	LIMIT_SERIES = 5000000,     /* multiplications of a Taylor series */
 	LIMIT_COLLOCATED = 128,     /* coordinates of a collocation, whose matrices stand on the stack */
-	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step */
+	LIMIT_TURNS = 2048,         /* log2 of a load's angle in a step */
 	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */
 	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
 	LIMIT_ERRORS = 100,         /* reported before the rest is not looked at */

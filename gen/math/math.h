@@ -186,7 +186,7 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);
 struct taylor *taylor_doubled(struct taylor *half);         /* of the same A at twice the time: the square */
 /* Every entry to an absolute error below 2^-precision times the largest entry's size (of the real e^{A tau} or its
  * enclosure); small entries of short paths come out to nearly that many bits of their own. Cached: asking for less than
- * is known costs nothing. False: |A tau| above 2^512, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
+ * is known costs nothing. False: |A tau| above 2^4096, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
 bool taylor_enclose(struct taylor *t, int precision);
 /* sets value's precision; after taylor_enclose */
 void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);

@@ -32,10 +32,17 @@ struct culprit {                    /* what an overflow comes from */
 };
 
 /* The pole that grows fastest; if none grows in a step, the largest one, since then its units are to blame. */
-static struct culprit find_culprit(struct spectrum *spectrum, double h)
+static struct culprit find_culprit(const struct model *model, struct spectrum *spectrum)
 {
 	struct culprit fastest = { spectrum->zero ? 0 : -INFINITY, 0, 0, false }, largest = { 0 };
+	const double h = nearest_double(model->h);
 	(void)spectrum_refine(spectrum, FIRST_PRECISION);
+	for (int l = 0; l < model->system.loads; l++) {
+		const struct forcing *f = model->system.load[l].forcing;
+		const double a = nearest_double(f->a);
+		if (a * h > 1 && a > fastest.re)
+			fastest = (struct culprit){ a, nearest_double(f->w), 0, true };
+	}
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++) {
 			double re = mpfi_get_d(spectrum->pole[f][i].at.re), im = mpfi_get_d(spectrum->pole[f][i].at.im);
@@ -135,8 +142,8 @@ static bool round_in_bits(const struct number *n, bool two_words, int *precision
 	for (; *precision <= most; *precision *= 2) {
 		if (!enclose_number(n, *precision, value))
 			return false;
-		if (!round_enclosure(value, &c->value))
-			continue;
+		if (!round_enclosure(value, &c->value) || (mpfi_has_zero(value) && 2 * *precision <= LIMIT_PRECISION))
+			continue;               /* what is too small for the range may be 0 */
 		if (!two_words || !isfinite(c->value))
 			return true;
 		mpfi_sub_d(value, value, c->value);
@@ -172,7 +179,7 @@ void check_range(const struct model *model, const struct coefficient *c, const s
 {
 	if (isfinite(c->value))
 		return;
-	struct culprit pole = find_culprit(resolvent_spectrum(resolvent), nearest_double(model->h));
+	struct culprit pole = find_culprit(model, resolvent_spectrum(resolvent));
 	error(model->request.step_at, pole.grows ? "a smaller step would do" : NULL,
 	      "%s is beyond the range of %s: pole %s, h = %s s", what, target_name(), pole_of(&pole),
 	      readable_text(model->h));
