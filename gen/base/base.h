@@ -13,7 +13,7 @@
  *   forcing term       a load cos(w t + p) or sin(w t + p); the two of one (w, p) share an oscillator
  *   held       terms that a scheme keeps at their value at the start of the step
  *
- * Data flow: source -> tokens -> nodes -> model (exact) -> A (exact) -> e^{A tau} (enclosed)
+ * Data flow: source -> tokens -> nodes -> model (exact) -> images N/D (exact) -> poles, residues (enclosed)
  *            -> coefficients (rounded once) -> step program -> C, header, report.
  * No double stands before `coefficients`, the starting values of the root iteration excepted.
  */
@@ -58,7 +58,7 @@ enum {
 	LIMIT_LOAD_POWER = 32,      /* exponent of a load, as in t^3 */
 	LIMIT_TUNED_NUMBERS = 8192, /* of matrices of regions that an instance has, where params change them */
 	LIMIT_UNROLLED_STATES = 16, /* beyond, a step loops over its tables */
-	FEW_STATES = 12,            /* beyond, no blocks of rows; poles begin from eigenvalues of the matrix */
+	LIMIT_RESIDUE_STATES = 12,  /* beyond, a Taylor series gives the numbers: residues get slow */
 	LIMIT_DELAY = 100000,       /* steps */
 	LIMIT_DELAY_PARTS = 64,     /* of a step, of which all delays are multiples */
 	LIMIT_BLOCK_ROWS = 64,      /* in a block of NAME_run */
@@ -72,8 +72,8 @@ enum {
 	LIMIT_HELD_STATES = 64,     /* and whose discrete state space is */
 	LIMIT_FREQUENCIES = 100000, /* rows of --response */
 	LIMIT_SERIES = 5000000,     /* multiplications of a Taylor series */
-	LIMIT_COLLOCATED = 128,     /* coordinates of a collocation, whose matrices stand on the stack */
-	LIMIT_TURNS = 2048,         /* log2 of a load's angle in a step */
+	LIMIT_COLLOCATED = 128,      /* coordinates of a collocation, whose matrices stand on the stack */
+	LIMIT_TURNS = 256,          /* log2 of a load's angle in a step, for models of more states than that */
 	LIMIT_ASSEMBLY = 1000,      /* of an assembly, */
 	LIMIT_PARTS_INSIDE = 32,    /* inside each other */
 	LIMIT_ERRORS = 100,         /* reported before the rest is not looked at */

@@ -23,9 +23,15 @@ struct basis {
 	bool sine;
 	const struct atom *atom;    /* of BASIS_ATOM: an expression that the linear core cannot carry */
 };
+struct kept_response {              /* of load state `to` to load state `from`: step/loads.c */
+	int to, from;
+	struct response *response;
+	struct kept_response *next;
+};
 struct forcing {                    /* e^{a t} cos(w t + p) and sin, w > 0; or e^{a t} alone, w = p = 0 */
 	mpq_t a, w, p;
 	int index;                  /* in the order of first appearance */
+	struct kept_response **kept;
 	struct forcing *next;       /* of the same hash */
 };
 struct form_term {

@@ -37,6 +37,7 @@ struct forcing *forcing_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_
 	mpq_set(forcing->w, w);
 	mpq_set(forcing->p, p);
 	forcing->index = c->forcings->count++;
+	forcing->kept = NEW(struct kept_response *);
 	return forcing;
 }
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Polynomials, poles, e^{A tau}: exact and enclosed. Knows no model. */
+/* Polynomials, poles, residues, e^{A tau}: exact and enclosed. Knows no model. */
 #ifndef PLGEN_MATH_H
 #define PLGEN_MATH_H
 
@@ -169,6 +169,7 @@ struct spectrum {                   /* the distinct poles of one denominator, 0 
 	struct pole **pole;
 	int precision;              /* bits to which the poles are known now; 0: not yet */
 	struct iteration *iteration; /* poles.c: where the iteration stands, per factor */
+	struct growth *growth;      /* residues.c: e^{p tau} and the denominator's series at the poles */
 	struct spectrum *next;
 };
 struct spectrum *spectrum_of(struct poly D);                /* the same object for the same D */
@@ -179,6 +180,24 @@ void spectrum_expect(struct spectrum *spectrum, int count, const double *re, con
 /* relative 2^-precision; false: not isolated within the limits */
 bool spectrum_refine(struct spectrum *spectrum, int precision);
 
+/* ---- residues.c: values of c e^{A tau} b as sums of residues, enclosed ---- */
+
+struct response {                   /* scale * N/D, N and D coprime */
+	mpq_t scale;
+	struct poly N;
+	struct spectrum *spectrum;
+	mpq_t *at_zero;             /* residue at 0 as a polynomial in tau: zero-th coefficient first */
+	struct rectangle ***residue; /* [factor][pole][k], for `precision` bits */
+	int precision;
+	mpq_t last;                 /* time at which it was enclosed last */
+};
+struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
+/* True if the value at tau is rational: then `exact` is it. False: it is transcendental, and response_enclose
+ * converges. */
+bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);
+/* false: poles not isolated */
+bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value);
+
 /* ---- taylor.c, polynomial.c: e^{A tau} as a whole, enclosed or exact ---- */
 
 struct taylor;                      /* one rational A (n x n, row-major) and one tau */
@@ -186,15 +205,12 @@ struct taylor *taylor_of(int n, const mpq_t *A, mpq_srcptr tau);
 struct taylor *taylor_doubled(struct taylor *half);         /* of the same A at twice the time: the square */
 /* Every entry to an absolute error below 2^-precision times the largest entry's size (of the real e^{A tau} or its
  * enclosure); small entries of short paths come out to nearly that many bits of their own. Cached: asking for less than
- * is known costs nothing. False: |A tau| above 2^4096, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
+ * is known costs nothing. False: |A tau| above 2^512, an entry beyond 2^(2^50), or errors that outgrow 64 kbit. */
 bool taylor_enclose(struct taylor *t, int precision);
 /* sets value's precision; after taylor_enclose */
 void taylor_entry(const struct taylor *t, int i, int j, mpfi_ptr value);
 /* True if the entry is a polynomial in tau, zero included, for every tau: then `exact` is its value at this one. */
 bool taylor_exact(struct taylor *t, int i, int j, mpq_ptr exact);
-struct taylor_place { int row, column; mpq_t weight; };
-/* Whether a sum of entries is rational at this tau, as those of (1 - s) e^{-s} are at 1; slow */
-bool taylor_rational(struct taylor *t, int count, const struct taylor_place *place, mpq_ptr exact);
 
 /* ---- stream.c: x' = A x, x enclosed ---- */
 

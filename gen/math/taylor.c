@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* e^{A tau}: e^B by its Taylor series, B = A tau / 2^s, then s squarings.
+/* e^{A tau} for models whose residues would be slow: e^B by its Taylor series, B = A tau / 2^s, then s squarings.
  *
  * Entries are balls, with exponents and radii of their own. Errors stay below a small multiple of
  * 2^-p (e^{|A| tau})_ij, entry by entry: |XY| <= |X||Y|, and e^{|A|tau/2} e^{|A|tau/2} = e^{|A|tau}. So an entry of
@@ -16,7 +16,7 @@
 #include <string.h>
 
 enum {
-	LARGEST_HALVINGS = 4096,
+	LARGEST_HALVINGS = 512,
 	LARGEST_DEGREE = 1 << 16,
 	LARGEST_WORK = 4 * LIMIT_PRECISION,
 	BALANCING_SWEEPS = 24

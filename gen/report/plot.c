@@ -337,17 +337,20 @@ static void add_response(struct picture *p, int sheet, int output, int column, b
 static void print_samples(struct picture *p, int count, const int *output)
 {
 	const struct model *model = p->step->shown->model;
+	struct resolvent *r = resolvent_of(&model->system);
+	struct started **form = ARRAY(struct started *, count);
+	int *forms = ARRAY(int, count);
 	RATIONAL t = ZERO, interval = ZERO;
 	unsigned long last = interval_of_samples(model, span_of(p->step), interval);
-	struct closed_form *form = closed_form_new(model->request.step_at, &model->system, model->initial, interval,
-						   false);
+	for (int i = 0; i < count; i++)
+		forms[i] = responses_of_output(r, &model->system, model->initial, &model->output[output[i]], &form[i]);
 	fputs("$response << END\n", p->data);
 	for (unsigned long k = 0; k <= last; k++) {
 		progress("row", (int)k, (int)last);
 		fprintf(p->data, "%.17g", nearest_double(t));
 		for (int i = 0; i < count; i++)
-			fprintf(p->data, " %.17g", closed_form_value(form, &model->output[output[i]], t, false,
-								     model->output[output[i]].name).value);
+			fprintf(p->data, " %.17g", started_value(forms[i], form[i], t, false, model->request.step_at,
+								 model->output[output[i]].name).value);
 		fputc('\n', p->data);
 		mpq_add(t, t, interval);
 	}

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The closed-form solution as CSV: every value is enclosed, and rounded once; nothing is stepped. That of a
+/* The closed-form solution as CSV: every value is its own residue sum, correctly rounded; nothing is stepped. That of a
  * piecewise-linear model goes from crossing to crossing. */
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
@@ -40,6 +40,11 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	return rows;
 }
 
+struct closed_form {                /* of one output */
+	int count;
+	struct started *list;
+};
+
 /* What a step finds has no formula. */
 static void check_peaks_of(const struct model *model)
 {
@@ -47,14 +52,6 @@ static void check_peaks_of(const struct model *model)
 		if (model->output[i].peak)
 			error(model->output[i].value->start, "a step finds it", "the peak of '%s' has no closed form",
 			      model->output[i].name);
-}
-
-static void print_heading(FILE *to, const struct model *model)
-{
-	fputc('t', to);
-	for (int j = 0; j < model->outputs; j++)
-		fprintf(to, ",%s", model->output[j].name);
-	fputc('\n', to);
 }
 
 /* ---- through crossings ---- */
@@ -161,7 +158,10 @@ static void print_trajectory(FILE *to, const struct model *model, unsigned long 
 	struct printing p = { .to = to, .model = model, .last = last,
 			      .largest = ARRAY(double, model->outputs) };
 	const char *before = NULL;
-	print_heading(to, model);
+	fputc('t', to);
+	for (int j = 0; j < model->outputs; j++)
+		fprintf(to, ",%s", model->output[j].name);
+	fputc('\n', to);
 	int equal = 1;                  /* what more bits do not tell apart, may be one */
 	int bits_before = 0, next;
 	unsigned long rows_before = 0;
@@ -190,19 +190,24 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		return;
 	}
 	check_pole_size(model, written);
-	struct closed_form *form = closed_form_new(model->request.step_at, &model->system, model->initial, model->h,
-						   false);
-	print_heading(to, model);
+	struct closed_form *form = ARRAY(struct closed_form, model->outputs);
+	fputc('t', to);
+	for (int j = 0; j < model->outputs; j++) {
+		form[j].count = responses_of_output(written, &model->system, model->initial,
+						    &model->output[j], &form[j].list);
+		fprintf(to, ",%s", model->output[j].name);
+	}
+	fputc('\n', to);
 	RATIONAL t = ZERO;
 	for (unsigned long k = 0; k <= last; k++) {
 		progress("row", (int)k, (int)last);
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
-			const struct output *output = &model->output[j];
-			struct coefficient value = closed_form_value(form, output, t, false, output->name);
+			struct coefficient value = started_value(form[j].count, form[j].list, t, false,
+								 model->request.step_at, model->output[j].name);
 			if (!isfinite(value.value))
 				error(model->request.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
-				      output->name, readable_text(t));
+				      model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}
 		fputc('\n', to);

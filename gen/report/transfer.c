@@ -50,28 +50,38 @@ int drives_of(const struct model *model, struct drive **drives)
 
 /* ---- one transfer function ---- */
 
+static struct response *image_of_load(struct resolvent *r, const struct model *model, const struct output *output,
+				      const struct drive *drive)
+{
+	const struct linear *system = &model->system;
+	struct excitation e = excitation_new(system->n, NULL, NULL, 1);
+	for (int k = 0; k < system->n; k++)
+		mpq_set(e.force[k], system->load[drive->load].force[drive->column][drive->segment * system->n + k]);
+	mpq_set(e.direct[0], output->load[drive->load][drive->column * system->segments + drive->segment]);
+	return image_of(r, &(struct question){ NULL, 1, &e, output->state });
+}
+
+/* s^powers times an image, without common factors */
+static void multiply_by_s(struct transfer *t, const struct response *image, int powers)
+{
+	struct poly D = image->spectrum->D;
+	int poles = D.length ? poly_valuation(D) : 0, shared = poles < powers ? poles : powers;
+	mpq_init(t->scale);
+	mpq_set(t->scale, image->scale);
+	t->N = image->N.length ? poly_shift(image->N, powers - shared) : image->N;
+	t->D = poly_shift(D, -shared);
+}
+
 static struct transfer transfer_of(struct resolvent *r, const struct model *model, int output,
 				   const struct drive *drive)
 {
 	const struct output *read = &model->output[output];
-	const struct linear *system = &model->system;
 	struct transfer t = { .output = read->name, .drive = drive->name, .input = drive->input };
-	const bool input = drive->input >= 0;
-	const int segment = drive->segment;
-	const mpq_t *force[2], *direct[2];
-	for (int k = 0; k < 2 && input; k++) {
-		force[k] = system->input[drive->input].force[k];
-		direct[k] = &read->input[k][drive->input];
-	}
-	if (!input) {
-		force[0] = system->load[drive->load].force[drive->column] + segment * system->n;
-		direct[0] = &read->load[drive->load][drive->column * system->segments + segment];
-	}
-	const struct transfer_function f = transfer_function_of(r, read->state, input ? 2 : 1, force, direct);
-	mpq_init(t.scale);
-	mpq_set(t.scale, f.scale);
-	t.N = f.N;
-	t.D = f.D;
+	RATIONAL zero = ZERO, one = RATIO(1, 1);
+	if (drive->input >= 0)
+		multiply_by_s(&t, output_of_input(r, &model->system, read, drive->input, zero, one), 2);
+	else
+		multiply_by_s(&t, image_of_load(r, model, read, drive), 1);
 	return t;
 }
 

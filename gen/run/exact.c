@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of linear models whose loads are known nothing is left to chance: the exact outputs, enclosed at every sample, for
- * the run of a step bit by bit beside them. What it is off is the error itself, as long as a compiler rounds each
- * product and each sum as it is written. */
+/* Of linear models whose loads are known nothing is left to chance: the exact outputs, each an enclosed sum of residues
+ * at every sample, for the run of a step bit by bit beside them. What it is off is the error itself, as long as a
+ * compiler rounds each product and each sum as it is written. */
 #include "run/run.h"
 #include "step/linear/images.h"
 
 #include <math.h>
 
-/* Samples times what an exact one is a sum of; states */
+/* Samples times what an exact one is a sum of; states of which residues are found in a second */
 enum { MOST_EXACT = 1000000, MOST_STATES = 48 };
 
 struct making {
 	const struct model *full;       /* of all modes, as written */
 	const struct requirement *needs;
-	struct closed_form *form;
+	struct resolvent *written;      /* its poles */
 	struct course *course;
 };
 
@@ -26,29 +26,30 @@ static int first_need(const struct requirement *needs, int i)
 	return first;
 }
 
-static void make_sample(const struct making *m, long k, mpq_srcptr t)
+static void make_column(const struct making *m, int i)
 {
 	struct course *c = m->course;
-	double *const value = c->value + k * c->needs, *const low = c->low + k * c->needs;
-	for (int i = 0; i < c->needs; i++) {
-		const struct output *output = &m->full->output[m->needs[i].output];
-		const int first = first_need(m->needs, i);
-		struct coefficient now = { .value = value[first], .low = low[first] };
+	struct started *list;
+	RATIONAL t = ZERO;
+	const int first = first_need(m->needs, i);
+	const struct output *output = &m->full->output[m->needs[i].output];
+	const int count = responses_of_output(m->written, &m->full->system, m->full->initial, output, &list);
+	for (long k = 0; k <= c->samples; k++) {
+		struct coefficient value = { .value = c->value[k * c->needs + first],
+					     .low = c->low[k * c->needs + first] };
 		if (first == i)
-			now = closed_form_value(m->form, output, t, true, output->name);
-		value[i] = now.value;
-		low[i] = now.low;
+			value = started_value(count, list, t, true, m->full->request.step_at, output->name);
+		c->value[k * c->needs + i] = value.value;
+		c->low[k * c->needs + i] = value.low;
+		mpq_add(t, t, m->full->h);
 	}
 }
 
-static void make_samples(void *context)
+static void make_columns(void *context)
 {
 	const struct making *m = context;
-	RATIONAL t = ZERO;
-	for (long k = 0; k <= m->course->samples; k++) {
-		make_sample(m, k, t);
-		mpq_add(t, t, m->full->h);
-	}
+	for (int i = 0; i < m->course->needs; i++)
+		make_column(m, i);
 }
 
 struct course *exact_course_of(const struct model *full, const struct model *stepped)
@@ -65,7 +66,6 @@ struct course *exact_course_of(const struct model *full, const struct model *ste
 	struct course *course = course_of(stepped, h);
 	course->low = ARRAY(double, (size_t)(course->samples + 1) * (size_t)course->needs);
 	target_double();
-	struct making m = { full, needs, NULL, course };
-	m.form = closed_form_new(full->request.step_at, system, full->initial, full->h, false);
-	return silent_guard(make_samples, &m) ? course : NULL;
+	struct making m = { full, needs, resolvent_of(system), course };
+	return silent_guard(make_columns, &m) ? course : NULL;
 }

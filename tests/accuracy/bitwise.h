@@ -53,7 +53,7 @@ struct augmented augment(const struct linear *system, int segment, bool pl, mpq_
 bool rounded(mpfi_ptr x, double *d);
 void compare_low(const char *what, struct enclosures *e, size_t i, size_t j, const struct coefficient *found);
 const char *entry_name(const struct model *model, size_t i, size_t j);
-void compare_scheme(const struct model *model);
+void compare_scheme(const struct model *model, bool both_roads);
 
 /* ---- bitwise_solution.c ---- */
 

@@ -118,8 +118,7 @@ static void compare_solution_values(void *context)
     struct solution_work *work = context;
     const struct model *model = work->model;
     const size_t first = work->solution->size - work->solution->outputs;
-    struct closed_form *form =
-        closed_form_new(model->request.step_at, &model->system, (const mpq_t *)model->initial, model->h, false);
+    struct resolvent *resolvent = resolvent_of(&model->system);
     mpq_t t;
     mpq_init(t);
     for (int k = 0; k < 4; k++) {
@@ -129,7 +128,11 @@ static void compare_solution_values(void *context)
         if (!expected_outputs(work->solution, t, work->expected))
             continue;
         for (int o = 0; o < model->outputs; o++) {
-            const struct coefficient c = closed_form_value(form, &model->output[o], t, false, model->output[o].name);
+            struct started *list;
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
+                                                       model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
     }
@@ -292,8 +295,7 @@ static void compare_changes(void *context)
     static const unsigned long multiples[] = { 0, 1, 17, 60, 101, 3000 };
     const struct model *model = ((struct solution_work *)context)->model;
     const struct augmented a = augment(&model->system, 0, false, model->h);
-    struct closed_form *form =
-        closed_form_new(model->request.step_at, &model->system, (const mpq_t *)model->initial, model->h, false);
+    struct resolvent *resolvent = resolvent_of(&model->system);
     mpq_t t;
     mpq_init(t);
     for (size_t k = 0; k < sizeof multiples / sizeof *multiples; k++) {
@@ -307,7 +309,11 @@ static void compare_changes(void *context)
             continue;
         }
         for (int o = 0; o < model->outputs; o++) {
-            const struct coefficient c = closed_form_value(form, &model->output[o], t, false, model->output[o].name);
+            struct started *list;
+            const int count =
+                responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
+            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
+                                                       model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }
     }

@@ -332,7 +332,7 @@ static struct judged_number *numbers(int count)
 }
 
 /* How load states go on by themselves: the corner of A that is theirs */
-static mpq_t *matrix_of_load(const struct judge *j)
+static mpq_t *load_matrix(const struct judge *j)
 {
     struct leg f = flow_in(j, 0);
     mpq_t *A = rationals((size_t)(j->loads * j->loads));
@@ -371,7 +371,7 @@ static void fill_turns(struct judge *j)
     mpfi_t *E = intervals(n * n), *now = intervals(cells), *next = intervals(cells);
     evaluator_enclosure enclosure;
     evaluator_enclosure_init(&enclosure, (size_t)n);
-    if (evaluator_enclose((const mpq_t *)matrix_of_load(j), j->h, BITS, &enclosure)) {
+    if (evaluator_enclose((const mpq_t *)load_matrix(j), j->h, BITS, &enclosure)) {
         printf("# the judge gives up\n");
         exit(1);
     }

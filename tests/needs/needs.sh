@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Random models with needs (random.awk): what is emitted is compiled and run, and at every sample up to the end of the
-# need its output is within the bound of the exact one, which --solution gives in closed form, correctly rounded. What
+# need its output is within the bound of the exact one, which --solution gives from residues, correctly rounded. What
 # is certified is at most three times the largest error there is, in the median one and a half times.
 # needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds
 # needs.sh PLGEN HERE RUNTIME changes: changes.spec, whose load changes its formula; and that its C, which is certified

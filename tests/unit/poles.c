@@ -1,11 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the proofs of gen/math promise (poles.c, enclosure.c, taylor.c, polynomial.c), where the truth is known by
- * construction: polynomials are products of factors with rational roots, real or complex, so that whether a disc holds
- * a root is decided in rationals. poles.c is part of this file: its discs are looked at when approximations are still
- * poor, as an iteration that has converged hides much. */
+/* What the proofs of gen/math: poles.c, enclosure.c and residues.c promise, where the truth is known by construction:
+ * polynomials are products of factors with rational roots, real or complex, so that whether a disc holds a root is
+ * decided in rationals. poles.c is part of this file: its discs are looked at when approximations are still poor, as an
+ * iteration that has converged hides much. */
 #include "../../gen/math/poles.c"
-
-#include "companion.h"
 
 #include <stdarg.h>
 #include <stddef.h>
@@ -454,7 +452,7 @@ static void draw_small(mpq_ptr q, bool above)
 
 /* Sum of weight / (s - p)^k, p real and 0 among them, and of (cosine (s - re) + sine im) / ((s - re)^2 + im^2), over
  * one denominator */
-static void every_transform_holds_its_truth(void **state)
+static void every_response_holds_its_truth(void **state)
 {
     enum { PARTS = 4 };
     mpq_t tau, scale;
@@ -558,14 +556,14 @@ static void every_transform_holds_its_truth(void **state)
         D = poly_primitive(D, content);
         mpq_set_z(c, content);
         mpq_div(scale, scale, c);
+        struct response *response = response_of(scale, N, D);
         for (int k = 0, precision = 0; k < 3; k++) {
             precision += 1 + (int)draw(120);
             mpfi_init2(value, 32 + precision);
-            struct companion by = companion_of(scale, N, D, tau);
-            if (companion_exact(&by, c))
+            if (response_exact(response, tau, c))
                 mpfi_set_q(value, c);
             else
-                assert_true(companion_enclose(&by, precision, value));
+                assert_true(response_enclose(response, tau, precision, value));
             assert_encloses(n, value, truth);
             mpfi_clear(value);
         }
@@ -641,7 +639,7 @@ int main(void)
         cmocka_unit_test(a_mirrored_disc_is_not_alone),
         cmocka_unit_test(every_pole_holds_its_root),
         cmocka_unit_test(every_rectangle_holds_its_truth),
-        cmocka_unit_test(every_transform_holds_its_truth),
+        cmocka_unit_test(every_response_holds_its_truth),
     };
     memory_open();
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

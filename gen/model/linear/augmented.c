@@ -103,13 +103,6 @@ static void fill_load_rows(mpq_t *A, int size, int at, const struct load *load)
 	}
 }
 
-mpq_t *load_matrix(const struct load *load)
-{
-	mpq_t *A = rationals((size_t)load->columns * (size_t)load->columns);
-	fill_load_rows(A, load->columns, 0, load);
-	return A;
-}
-
 /* column `at` of the rows of states */
 static void fill_force(mpq_t *A, int size, int at, const struct linear *system, const mpq_t *inverse,
 		       const mpq_t *force)

@@ -133,6 +133,5 @@ struct layout layout_of_columns(const struct linear *system);
 const char **layout_names(const struct layout *layout, const struct linear *system, const struct model *model);
 /* A of x' = A x; `segment` where the layout is of one */
 mpq_t *augmented_matrix(const struct layout *layout, const struct linear *system, int segment);
-mpq_t *load_matrix(const struct load *load);       /* of the states of a load alone */
 
 #endif

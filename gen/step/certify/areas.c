@@ -3,7 +3,6 @@
 #include "inner.h"
 #include "model/tunable/elsewhere.h"
 #include "model/contacts/friction.h"
-#include "step/linear/images.h"
 #include "trajectory.h"
 
 #include <math.h>
@@ -219,11 +218,34 @@ void trajectory_enter(struct trajectory *t, int region)
 
 /* ---- what loads and inputs are at a time ---- */
 
+static void forcing_at(const struct trajectory *t, const struct load *load, int column, mpq_srcptr time, mpfi_ptr z)
+{
+	const struct forcing *forcing = load->forcing;
+	bool turns = oscillates(forcing);
+	RATIONAL argument = ZERO;
+	INTERVAL factor = OVER_BITS(t->precision);
+	mpq_mul(argument, forcing->a, time);
+	mpfi_set_q(factor, argument);
+	mpfi_exp(z, factor);
+	for (int k = 0; k < (turns ? column / 2 : column); k++)
+		mpfi_mul_q(z, z, time);
+	if (turns) {
+		mpq_mul(argument, forcing->w, time);
+		mpq_add(argument, argument, forcing->p);
+		mpfi_set_q(factor, argument);
+		if (mpq_sgn(argument) == 0)
+			mpfi_set_ui(factor, column % 2 == 0);
+		else
+			(column % 2 ? mpfi_sin : mpfi_cos)(factor, factor);
+		mpfi_mul(z, z, factor);
+	}
+}
+
 void trajectory_loads(struct trajectory *t)
 {
 	for (int l = 0; l < t->system->loads; l++)
 		for (int k = 0; k < t->system->load[l].columns && t->layout.load[l] >= 0; k++)
-			load_enclosed(&t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
+			forcing_at(t, &t->system->load[l], k, t->base, t->x[t->layout.load[l] + k]);
 }
 
 bool trajectory_meets(const struct trajectory *t, const struct guard *one, const struct guard *other)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The tables of a step: which entries of e^{A tau} each of their numbers is a sum of. */
+/* The tables of a step: which responses, or entries of e^{A tau}, each of their numbers is a sum of. */
 #include "inner.h"
 #include "model/reads.h"
 
@@ -15,13 +15,15 @@ struct filling {
 	struct resolvent *resolvent;
 	const char **state_name;
 	struct layout layout;
-	int exponentials;
+	int exponentials;           /* 0: residues */
 	struct exponential *exponential;
 	const struct wanted *wanted; /* the table being filled */
 	int segment, row;
 	mpq_t tau;                  /* its time */
 	int entries;                /* room for one combination */
 	struct entry *entry;
+	int responses;
+	struct started *response;
 	mpq_t **impulse;            /* per force column, once asked for */
 	mpq_srcptr scale, less;     /* of the number being rounded; NULL: 1 and 0 */
 	const int *coord;           /* of a block, per coordinate: of the whole; NULL: it is the whole */
@@ -66,34 +68,75 @@ static void add_entry(struct filling *f, mpq_srcptr tau, int column, mpq_srcptr 
 {
 	struct entry *entry = &f->entry[f->entries++];
 	entry->taylor = taylor_at(f, tau);
-	entry->place.row = f->row;
-	entry->place.column = column;
-	mpq_set(entry->place.weight, weight);
+	entry->column = column;
+	mpq_set(entry->weight, weight);
 }
 
-/* What adds to f->entry the entries of e^{A tau} that a number is a sum of */
+static void add_response(struct filling *f, struct response *response, mpq_srcptr start)
+{
+	f->response[f->responses].response = response;
+	mpq_set(f->response[f->responses++].start, start);
+}
+
+/* Two who answer what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
+enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_PHI_WEIGHT, SOUGHT };
 typedef void evaluator(struct filling *f, int a, int b);
 
-static struct number ask(struct filling *f, evaluator *add, int a, int b)
+static evaluator state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor;
+static evaluator state_by_residues, input_by_residues, load_by_residues, phi_weight_by_residues;
+static evaluator *const by_taylor[SOUGHT] = { state_by_taylor, input_by_taylor, load_by_taylor, phi_weight_by_taylor };
+static evaluator *const by_residues[SOUGHT] = { state_by_residues, input_by_residues, load_by_residues,
+					     phi_weight_by_residues };
+
+static struct number ask(struct filling *f, evaluator *const *evaluators, enum sought what, int a, int b)
 {
-	f->entries = 0;
-	add(f, a, b);
-	return (struct number){ f->entries, f->entry, f->scale, f->less };
+	f->entries = f->responses = 0;
+	evaluators[what](f, a, b);
+	struct number number = { .row = f->row, .t = f->tau, .scale = f->scale, .less = f->less };
+	if (evaluators == by_taylor) {
+		number.count = f->entries;
+		number.entry = f->entry;
+	} else {
+		number.count = f->responses;
+		number.list = f->response;
+	}
+	return number;
 }
 
-static struct coefficient number_of(struct filling *f, bool two_words, evaluator *add, int a, int b, const char *of)
+/* Rounded: from entries of e^{A tau} if the filling has them and they decide it; what vanishes at this very step only
+ * residues decide. */
+static struct coefficient number_of(struct filling *f, bool two_words, enum sought sought, int a, int b, const char *of)
 {
+	enum { TAYLOR_PRECISION = 2048 };
 	const char *what = format("the factor of %s in the step of %s", of, f->state_name[f->row]);
-	const struct number number = ask(f, add, a, b);
 	struct coefficient c;
-	if (!round_number(&number, two_words, &c))
-		undecided(f->model->request.step_at, what);
-	check_range(f->model, &c, f->resolvent, what);
+	bool isolated;
+	if (f->exponentials > 0) {
+		struct number number = ask(f, by_taylor, sought, a, b);
+		if (round_number(&number, two_words, TAYLOR_PRECISION, &c, &isolated) && isfinite(c.value))
+			return c;
+	}
+	struct number number = ask(f, by_residues, sought, a, b);
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(f->model->request.step_at, what, isolated);
+	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
 
+static void by_residues_from(struct filling *f, struct response *response)
+{
+	RATIONAL start = ZERO;
+	add_response(f, response, start);
+}
+
+static void state_by_residues(struct filling *f, int state, int unused)
+{
+	(void)unused;
+	by_residues_from(f, response_of_state(f->resolvent, f->system, f->row, state));
+}
+
 /* The state itself, and what a scheme holds of it: -heldK q or -heldC v in the held terms */
-static void add_state(struct filling *f, int state, int unused)
+static void state_by_taylor(struct filling *f, int state, int unused)
 {
 	(void)unused;
 	const struct linear *system = f->system;
@@ -114,7 +157,7 @@ static struct coefficient increment_entry(struct filling *f, int j, bool two_wor
 {
 	RATIONAL one = RATIO(1, 1);
 	f->less = f->row == j ? one : NULL;
-	struct coefficient c = number_of(f, two_words, add_state, j, 0, f->state_name[j]);
+	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	f->less = NULL;
 	return c;
 }
@@ -130,7 +173,7 @@ static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 	RATIONAL inverse = ZERO;
 	mpq_inv(inverse, mass_of(f, j));
 	f->scale = inverse;
-	struct coefficient c = number_of(f, two_words, add_state, f->system->velocity[j], 0,
+	struct coefficient c = number_of(f, two_words, SOUGHT_STATE, f->system->velocity[j], 0,
 					 f->state_name[f->system->velocity[j]]);
 	f->scale = NULL;
 	return c;
@@ -139,7 +182,7 @@ static struct coefficient drift_entry(struct filling *f, int j, bool two_words)
 static bool enclose_state(struct filling *f, int i, int j, int precision, mpfi_ptr value)
 {
 	f->row = i;
-	struct number number = ask(f, add_state, j, 0);
+	struct number number = ask(f, f->exponentials ? by_taylor : by_residues, SOUGHT_STATE, j, 0);
 	return enclose_number(&number, precision, value);
 }
 
@@ -211,7 +254,7 @@ static void fill_kicks(struct filling *f, struct table *table)
 	while (!round_kicks(f, table, precision)) {
 		precision *= 2;
 		if (precision > LIMIT_PRECISION)
-			undecided(f->model->request.step_at, "a kick of the form kick-drift-kick");
+			undecided(f->model->request.step_at, "a kick of the form kick-drift-kick", true);
 	}
 	for (int i = 0; i < system->n * system->n; i++)
 		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
@@ -219,8 +262,13 @@ static void fill_kicks(struct filling *f, struct table *table)
 			      "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
+static void input_by_residues(struct filling *f, int input, int column)
+{
+	by_residues_from(f, response_of_input(f->resolvent, f->system, f->row, input, column, f->model->h));
+}
+
 /* One sample's share of u and its derivatives at the start */
-static void add_input(struct filling *f, int input, int column)
+static void input_by_taylor(struct filling *f, int input, int column)
 {
 	int at = f->layout.input[input], hold = f->system->input[input].hold;
 	RATIONAL weight = ZERO;
@@ -231,7 +279,12 @@ static void add_input(struct filling *f, int input, int column)
 	}
 }
 
-static void add_load(struct filling *f, int load, int column)
+static void load_by_residues(struct filling *f, int load, int column)
+{
+	by_residues_from(f, response_of_load(f->resolvent, f->system, f->segment, f->row, load, column));
+}
+
+static void load_by_taylor(struct filling *f, int load, int column)
 {
 	RATIONAL one = RATIO(1, 1);
 	if (f->layout.load[load] >= 0)
@@ -269,7 +322,20 @@ static void add_impulse(struct filling *f, const struct phi_weight_part *part, m
 	}
 }
 
-static void add_phi_weight(struct filling *f, int index, int force_column)
+static void phi_weight_by_residues(struct filling *f, int index, int force_column)
+{
+	const struct phi_weight *phi_weight = &f->wanted->phi_weight[index];
+	RATIONAL start = ZERO;
+	for (int k = 0; k < phi_weight->parts; k++) {
+		const struct phi_weight_part *part = &phi_weight->part[k];
+		mpq_mul(start, part->fraction, f->model->h);
+		mpq_sub(start, f->tau, start);
+		add_response(f, response_of_phi_weight(f->resolvent, f->system, f->row, force_column, part,
+						       f->model->h), start);
+	}
+}
+
+static void phi_weight_by_taylor(struct filling *f, int index, int force_column)
 {
 	const struct phi_weight *phi_weight = &f->wanted->phi_weight[index];
 	RATIONAL tau = ZERO;
@@ -293,7 +359,7 @@ static struct coefficient immediate(struct filling *f, const struct phi_weight *
 	RATIONAL value = ZERO;
 	mpq_mul(value, impulse_of(f, force_column)[f->row], phi_weight->part[0].impulse);
 	struct coefficient c = { .value = round_rational(value), .zero = mpq_sgn(value) == 0 };
-	check_range(f->model, &c, f->resolvent, "a factor of the remainder");
+	check_range(f->model, &c, 0, NULL, "a factor of the remainder");
 	return c;
 }
 
@@ -315,7 +381,7 @@ static void fill_row(struct filling *f, struct table *table)
 	int n = table->states, columns = table->columns, i = f->row;
 	f->segment = 0;
 	for (int j = 0; j < n && wanted->Phi; j++)
-		table->Phi[i * n + j] = number_of(f, wanted->two_words, add_state, j, 0, f->state_name[j]);
+		table->Phi[i * n + j] = number_of(f, wanted->two_words, SOUGHT_STATE, j, 0, f->state_name[j]);
 	for (int j = 0; j < n && wanted->increments; j++)
 		table->increment[i * n + j] = i == j ? increment_entry(f, j, wanted->two_words) : table->Phi[i * n + j];
 	for (int j = 0; j < system->n && wanted->mass && i < system->n; j++)
@@ -323,13 +389,13 @@ static void fill_row(struct filling *f, struct table *table)
 	for (int j = 0, column = 0; j < system->inputs; j++)
 		for (int k = 0; k <= system->input[j].hold; k++, column++)
 			table->input[i * table->inputs + column] =
-				number_of(f, wanted->two_words, add_input, j, k, system->input[j].name);
+				number_of(f, wanted->two_words, SOUGHT_INPUT, j, k, system->input[j].name);
 	for (int j = 0; j < wanted->phi_weights; j++)
 		for (int e = 0; e < system->force_columns; e++)
 			table->phi_weight[j][i * system->force_columns + e] =
 				is_immediate(&wanted->phi_weight[j])
 					? immediate(f, &wanted->phi_weight[j], e)
-					: number_of(f, wanted->two_words, add_phi_weight, j, e,
+					: number_of(f, wanted->two_words, SOUGHT_PHI_WEIGHT, j, e,
 						    format("remainder %d", e + 1));
 	for (f->segment = 0; f->segment < system->segments; f->segment++)
 		for (int l = 0, column = 0; l < system->loads; l++) {
@@ -337,7 +403,7 @@ static void fill_row(struct filling *f, struct table *table)
 			for (int k = 0; k < system->load[l].columns; k++, column++) {
 				struct coefficient *here = &table->load[(f->segment * n + i) * columns + column];
 				*here = known ? here[-n * columns]
-					      : number_of(f, wanted->two_words, add_load, l, k,
+					      : number_of(f, wanted->two_words, SOUGHT_LOAD, l, k,
 							  column_text(&system->load[l], k));
 			}
 		}
@@ -386,15 +452,16 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 	}
 }
 
-/* A series of a forcing term that turns so often in a step would not end. */
+/* A series of a forcing term that turns so often in a step would not end, and residues are slow beyond a few states. */
 static void check_forcings(const struct filling *f)
 {
 	for (int l = 0; l < f->system->loads; l++) {
 		const long bits = rational_bits(f->system->load[l].forcing->w) + rational_bits(f->model->h);
 		if (bits > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
 			error(f->model->request.step_at, NULL,
-			      "the frequency of %s times the step is beyond the limit of 2^%d",
-			      column_text(&f->system->load[l], 0), LIMIT_TURNS);
+			      "the frequency of %s times the step is beyond the limit of 2^%d for models of more than "
+			      "%d states",
+			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);
 	}
 }
 
@@ -416,12 +483,17 @@ static struct table **tables_of_block(struct filling *f, int count, const struct
 	struct table **table = ARRAY(struct table *, count);
 	size_t room = (size_t)system->states + (size_t)system->n + 8;
 	f->entry = ARRAY(struct entry, room);
+	f->response = ARRAY(struct started, 4);
 	for (size_t i = 0; i < room; i++)
-		mpq_init(f->entry[i].place.weight);
+		mpq_init(f->entry[i].weight);
+	for (size_t i = 0; i < 4; i++)
+		mpq_init(f->response[i].start);
 	mpq_init(f->tau);
 	f->layout = layout_of_segments(system, longest_chain(count, wanted));
-	check_forcings(f);
-	plan_exponentials(f, count, wanted);
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		check_forcings(f);
+		plan_exponentials(f, count, wanted);
+	}
 	for (int t = 0; t < count; t++) {
 		f->wanted = &wanted[t];
 		table[t] = table_new(system, f->wanted);

@@ -1,41 +1,53 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* det (M s^2 + C s + K), transfer functions and natural frequencies; outputs in closed form. */
+/* The Laplace images of what a step is made of, and natural frequencies. */
 #ifndef PLGEN_STEP_IMAGES_H
 #define PLGEN_STEP_IMAGES_H
 
 #include "step/step.h"
 
-/* ---- resolvent.c: P(s) = M s^2 + C s + K ---- */
+/* ---- resolvent.c: the Laplace images of what a step needs ---- */
 
+/* acts from tau = 0 on: sum over m of tau^m e^{a tau} times cos(w tau) and sin(w tau) */
+struct excitation {
+	mpq_srcptr a, w;
+	int powers;                 /* m = 0 .. powers-1; where w = 0 there is no sine */
+	mpq_t *force;               /* [m][cos, sin][equation]: on the equations */
+	mpq_t *direct;              /* [m][cos, sin]: added to the result itself */
+};
+struct excitation excitation_new(int n, mpq_srcptr a, mpq_srcptr w, int powers); /* all 0; a, w NULL: 0 */
+struct question {                   /* row . y(tau) */
+	const mpq_t *initial;       /* y(0), one per state; NULL: 0 */
+	int excitations;
+	struct excitation *excitation;
+	const mpq_t *row;           /* one per state */
+};
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
+struct response *image_of(struct resolvent *r, const struct question *question);
 /* B(s) = det P, as many as its degree + 1 */
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
 const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
 
-struct transfer_function { mpq_t scale; struct poly N, D; };    /* scale N/D, coprime */
-/* of a row over states to a force on the equations, and to what it adds directly: [power of s][equation], [power][0] */
-struct transfer_function transfer_function_of(struct resolvent *r, const mpq_t *row, int powers,
-					      const mpq_t *const *force, const mpq_t *const *direct);
+/* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
 
-/* ---- loads.c ---- */
-
+struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column,
+				   mpq_srcptr h);
+/* of one load: z_to(t+tau) from z_from(t) */
+struct response *response_of_load_state(const struct load *load, int to, int from);
 /* what its unit force gives the states' derivatives */
 mpq_t *impulse_of_force_column(const struct linear *system, int force_column);
+struct started {                    /* a response that starts at a time of its own */
+	struct response *response;
+	mpq_t start;
+};
+/* output(t) from t = 0 as a sum of responses; returns how many */
+int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
+			const struct output *output, struct started **list);
+struct output state_as_output(const struct linear *system, int state); /* read alone */
+struct response *output_of_input(struct resolvent *r, const struct linear *system, const struct output *output,
+				 int input, mpq_srcptr value, mpq_srcptr slope);
 /* its value, rational or the nearest of 256 bits */
 void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z);
-void load_enclosed(const struct load *load, int column, mpq_srcptr t, mpfi_ptr z);
-struct output state_as_output(const struct linear *system, int state); /* read alone */
-
-/* ---- closed_form.c: outputs of a linear model at times that rise ---- */
-
-struct closed_form;
-/* Mostly at multiples of the distance; inputs 0, or where driven u = 1 - t/distance, held u = 1 */
-struct closed_form *closed_form_new(struct place at, const struct linear *system, const mpq_t *initial,
-				    mpq_srcptr distance, bool driven);
-/* Rounded, infinite beyond the range; `what` names it where it cannot be decided, which is an error */
-struct coefficient closed_form_value(struct closed_form *c, const struct output *output, mpq_srcptr t, bool two_words,
-				     const char *what);
 
 /* ---- frequencies.c: natural frequencies and damping ratios ---- */
 

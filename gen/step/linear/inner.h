@@ -23,9 +23,24 @@ void find_groups(struct program *program, const struct step *step);     /* and w
 
 struct modal *modal_of(const struct step *step);             /* NULL: a number is not decided */
 
-/* ---- resolvent.c ---- */
-
+/* Where the response of this number to a state or load of `system` is kept for who asks again: NULL at first, and for
+ * another system than before. Of many states none is. */
+struct response **response_kept(struct resolvent *r, const struct linear *system, int number);
 struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
+
+/* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
+
+/* Phi_ij, held terms included */
+struct response *response_of_state(struct resolvent *r, const struct linear *system, int i, int j);
+struct response *response_of_load(struct resolvent *r, const struct linear *system, int segment, int i, int load,
+				  int column);
+struct response *response_of_phi_weight(struct resolvent *r, const struct linear *system, int i, int force_column,
+				    const struct phi_weight_part *part, mpq_srcptr h);
+/* what an output is after tau: from these states alone; from a load state 1, and these states (NULL: 0), in the first
+ * segment of time; of an input u = value + slope tau, from rest */
+struct response *output_of_states(struct resolvent *r, const struct output *output, const mpq_t *initial);
+struct response *output_of_load(struct resolvent *r, const struct linear *system, const struct output *output, int load,
+				int column, const mpq_t *initial);
 
 /* ---- numbers.c: a number of a step before it is rounded ---- */
 
@@ -33,22 +48,30 @@ struct coefficient;
 
 enum { FIRST_PRECISION = 128 };     /* doubled while a number is not decided */
 
-/* A sum of entries of e^{A tau}, each with its weight */
-struct entry { struct taylor *taylor; struct taylor_place place; };
+/* Sums of responses at a time, or combinations of entries of e^{A tau} */
+struct entry {                      /* weight e^{A tau}[row][column] */
+	struct taylor *taylor;
+	int column;
+	mpq_t weight;
+};
 struct number {
 	int count;
-	const struct entry *entry;
+	const struct started *list; /* responses, each from its own start to t */
+	mpq_srcptr t;
+	const struct entry *entry;  /* or, if not NULL, entries of one row */
+	int row;
 	mpq_srcptr scale;           /* of the sum, then */
 	mpq_srcptr less;            /* is subtracted; NULL: 1 and 0 */
 };
 
 /* In so many bits; false: that is beyond the method's limits */
 bool enclose_number(const struct number *n, int precision, mpfi_ptr sum);
-/* Once, correctly, and in two words where wanted; false: not decided */
-bool round_number(const struct number *n, bool two_words, struct coefficient *c);
+/* Once, correctly, and in two words where wanted; false: not decided, *isolated says whether the poles were */
+bool round_number(const struct number *n, bool two_words, int limit, struct coefficient *c, bool *isolated);
 
-_Noreturn void undecided(struct place at, const char *what);
-/* Refuses what is beyond the range of the target, with the pole that it comes from */
-void check_range(const struct model *model, const struct coefficient *c, const struct resolvent *resolvent,
+_Noreturn void undecided(struct place at, const char *what, bool isolated);
+/* Refuses what is beyond the range of the target, with the pole that it comes from. list: responses, `count` of them */
+void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list,
 		 const char *what);
+
 #endif

@@ -46,14 +46,26 @@ static void add_state_rows(struct entries *list, const struct step *step, const 
 	}
 }
 
+/* A load's states among themselves */
+static struct coefficient *step_of_load(const struct step *step, const struct load *load)
+{
+	const struct model *model = step->model;
+	int n = load->columns;
+	struct coefficient *cell = ARRAY(struct coefficient, (size_t)n * (size_t)n);
+	for (int i = 0; i < n * n; i++) {
+		struct response *response = response_of_load_state(load, i / n, i % n);
+		cell[i] = response_value(response, model->h, true, model->request.step_at, column_text(load, i / n));
+	}
+	return cell;
+}
+
 int leap_entries_of(const struct step *step, const struct leap *leap, struct leap_entry **entry)
 {
 	const struct linear *system = &step->branch->system;
 	struct entries list = { 0 };
 	struct coefficient **cell = ARRAY(struct coefficient *, system->loads);
 	for (int l = 0; l < system->loads; l++)
-		cell[l] = leap->load[l] >= 0 ? growth_of_load(step, &system->load[l], step->model->h, true)
-					   : NULL;
+		cell[l] = leap->load[l] >= 0 ? step_of_load(step, &system->load[l]) : NULL;
 	for (int segment = 0; segment < system->segments; segment++) {
 		add_state_rows(&list, step, leap, segment);
 		for (int l = 0; l < system->loads; l++) {

@@ -2,7 +2,6 @@
 /* Each number of a step is decided exactly to be rational, or enclosed ever more tightly until both ends of the
  * enclosure round to the same double (Ziv); so each is rounded once, correctly. */
 #include "inner.h"
-#include "model/reads.h"
 
 #include <math.h>
 
@@ -32,17 +31,10 @@ struct culprit {                    /* what an overflow comes from */
 };
 
 /* The pole that grows fastest; if none grows in a step, the largest one, since then its units are to blame. */
-static struct culprit find_culprit(const struct model *model, struct spectrum *spectrum)
+static struct culprit find_culprit(const struct response *response, double h)
 {
+	const struct spectrum *spectrum = response->spectrum;
 	struct culprit fastest = { spectrum->zero ? 0 : -INFINITY, 0, 0, false }, largest = { 0 };
-	const double h = nearest_double(model->h);
-	(void)spectrum_refine(spectrum, FIRST_PRECISION);
-	for (int l = 0; l < model->system.loads; l++) {
-		const struct forcing *f = model->system.load[l].forcing;
-		const double a = nearest_double(f->a);
-		if (a * h > 1 && a > fastest.re)
-			fastest = (struct culprit){ a, nearest_double(f->w), 0, true };
-	}
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++) {
 			double re = mpfi_get_d(spectrum->pole[f][i].at.re), im = mpfi_get_d(spectrum->pole[f][i].at.im);
@@ -58,148 +50,162 @@ static const char *pole_of(const struct culprit *pole)
 	return pole->im == 0 ? format("%.6g 1/s", pole->re) : format("%.6g +- %.6g i 1/s", pole->re, pole->im);
 }
 
-_Noreturn void undecided(struct place at, const char *what)
+_Noreturn void undecided(struct place at, const char *what, bool isolated)
 {
-	error(at, NULL, "%s is not decided with %d bits", what, LIMIT_PRECISION);
+	const char *note = isolated ? NULL
+				    : "two poles cannot be told apart; do two parameters differ by less than their "
+				      "rounding?";
+	error(at, note, "%s is not decided with %d bits", what, LIMIT_PRECISION);
 }
 
 /* ---- enclosed, or exact ---- */
 
-bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
+/* One term; false: it is beyond the method's limits. *absent: it has not started. */
+static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr value, bool *absent)
 {
-	INTERVAL value = OVER_BITS(precision);
-	mpfi_set_prec(sum, precision + GUARD_BITS);
-	mpfi_set_ui(sum, 0);
-	for (int i = 0; i < n->count; i++) {
+	*absent = false;
+	if (n->entry) {
 		const struct entry *entry = &n->entry[i];
 		if (!taylor_enclose(entry->taylor, precision))
 			return false;
-		taylor_entry(entry->taylor, entry->place.row, entry->place.column, value);
-		mpfi_mul_q(value, value, entry->place.weight);
-		mpfi_add(sum, sum, value);
+		taylor_entry(entry->taylor, n->row, entry->column, value);
+		mpfi_mul_q(value, value, entry->weight);
+		return true;
+	}
+	RATIONAL tau = ZERO;
+	mpq_sub(tau, n->t, n->list[i].start);
+	*absent = mpq_sgn(tau) < 0;
+	return *absent || response_enclose(n->list[i].response, tau, precision, value);
+}
+
+bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
+{
+	bool good = true, absent;
+	INTERVAL value = OVER_BITS(precision);
+	mpfi_set_prec(sum, precision + GUARD_BITS);
+	mpfi_set_ui(sum, 0);
+	for (int i = 0; i < n->count && good; i++) {
+		good = enclose_term(n, i, precision, value, &absent);
+		if (good && !absent)
+			mpfi_add(sum, sum, value);
 	}
 	if (n->scale)
 		mpfi_mul_q(sum, sum, n->scale);
 	if (n->less)
 		mpfi_sub_q(sum, sum, n->less);
-	return true;
+	return good;
 }
 
-static void finish_exact(const struct number *n, mpq_ptr sum)
+static bool exact_term(const struct number *n, int i, mpq_ptr value)
 {
-	if (n->scale)
-		mpq_mul(sum, sum, n->scale);
-	if (n->less)
-		mpq_sub(sum, sum, n->less);
+	if (n->entry) {
+		bool exact = taylor_exact(n->entry[i].taylor, n->row, n->entry[i].column, value);
+		mpq_mul(value, value, n->entry[i].weight);
+		return exact;
+	}
+	RATIONAL tau = ZERO;
+	mpq_sub(tau, n->t, n->list[i].start);
+	mpq_set_ui(value, 0, 1);
+	bool exact = mpq_sgn(tau) < 0 || response_exact(n->list[i].response, tau, value);
+	return exact;
 }
 
-/* Entry by entry: for every time */
 static bool exact_number(const struct number *n, mpq_ptr sum)
 {
 	bool exact = true;
 	RATIONAL value = ZERO;
 	mpq_set_ui(sum, 0, 1);
 	for (int i = 0; i < n->count && exact; i++) {
-		const struct taylor_place *place = &n->entry[i].place;
-		exact = taylor_exact(n->entry[i].taylor, place->row, place->column, value);
-		rational_addmul(sum, value, place->weight);
-	}
-	finish_exact(n, sum);
-	return exact;
-}
-
-/* At this very time, of what stands at each */
-static bool rational_number(const struct number *n, mpq_ptr sum)
-{
-	struct taylor_place *place = ARRAY(struct taylor_place, n->count);
-	bool rational = true;
-	RATIONAL value = ZERO;
-	mpq_set_ui(sum, 0, 1);
-	for (int i = 0; i < n->count && rational; i++) {
-		int count = 0;
-		bool done = false;
-		for (int k = 0; k < n->count; k++) {
-			if (n->entry[k].taylor != n->entry[i].taylor)
-				continue;
-			done = done || k < i;
-			place[count++] = n->entry[k].place;
-		}
-		if (done)
-			continue;
-		rational = taylor_rational(n->entry[i].taylor, count, place, value);
+		exact = exact_term(n, i, value);
 		mpq_add(sum, sum, value);
 	}
-	finish_exact(n, sum);
-	return rational;
+	if (n->scale)
+		mpq_mul(sum, sum, n->scale);
+	if (n->less)
+		mpq_sub(sum, sum, n->less);
+	return exact;
 }
 
 /* ---- rounded ---- */
 
-/* In both words, as far as wanted, with more and more bits; *precision: so many first */
-static bool round_in_bits(const struct number *n, bool two_words, int *precision, int most, struct coefficient *c)
+struct enclosed {                   /* a number, to this precision; 0: not yet */
+	int precision;
+	mpfi_t at;
+};
+
+/* number - subtract, rounded, from what is known of the number on; false: not decided, *isolated says whether the
+ * poles were */
+static bool round_difference(const struct number *n, struct enclosed *known, double subtract, int limit, double *value,
+			     bool *isolated)
 {
-	INTERVAL value = OVER_BITS(FIRST_PRECISION);
-	for (; *precision <= most; *precision *= 2) {
-		if (!enclose_number(n, *precision, value))
-			return false;
-		if (!round_enclosure(value, &c->value) || (mpfi_has_zero(value) && 2 * *precision <= LIMIT_PRECISION))
-			continue;               /* what is too small for the range may be 0 */
-		if (!two_words || !isfinite(c->value))
-			return true;
-		mpfi_sub_d(value, value, c->value);
-		if (round_enclosure(value, &c->low))
-			return true;
+	INTERVAL difference = OVER_BITS(FIRST_PRECISION);
+	bool decided = false;
+	*isolated = true;
+	int precision = known->precision > 0 ? known->precision : FIRST_PRECISION;
+	for (; precision <= limit && !decided; precision *= 2) {
+		if (precision > known->precision)
+			*isolated = enclose_number(n, precision, known->at);
+		known->precision = precision;
+		if (!*isolated)
+			break;
+		mpfi_set_prec(difference, mpfi_get_prec(known->at));
+		mpfi_sub_d(difference, known->at, subtract);
+		decided = round_enclosure(difference, value);
 	}
-	return false;
+	return decided;
 }
 
-bool round_number(const struct number *n, bool two_words, struct coefficient *c)
+bool round_number(const struct number *n, bool two_words, int limit, struct coefficient *c, bool *isolated)
 {
-	enum { FAR = 2048 };            /* bits that hardly any transcendental number takes */
+	bool decided = true;
 	RATIONAL exact = ZERO, low = ZERO;
-	int precision = FIRST_PRECISION;
+	*isolated = true;
 	*c = (struct coefficient){ 0 };
-	if (!exact_number(n, exact)) {
-		if (round_in_bits(n, two_words, &precision, FAR, c))
-			return true;
-		if (!rational_number(n, exact))
-			return round_in_bits(n, two_words, &precision, LIMIT_PRECISION, c);
+	if (exact_number(n, exact)) {
+		c->zero = mpq_sgn(exact) == 0;
+		c->value = round_rational(exact);
+		if (two_words && isfinite(c->value)) {
+			mpq_set_d(low, c->value);
+			mpq_sub(low, exact, low);
+			c->low = round_rational(low);
+		}
+	} else {
+		struct enclosed known = { .precision = 0 };
+		mpfi_init2(known.at, FIRST_PRECISION);
+		decided = round_difference(n, &known, 0, limit, &c->value, isolated);
+		if (decided && two_words && isfinite(c->value))
+			decided = round_difference(n, &known, c->value, limit, &c->low, isolated);
+		mpfi_clear(known.at);
 	}
-	*c = (struct coefficient){ .value = round_rational(exact), .zero = mpq_sgn(exact) == 0 };
-	if (two_words && isfinite(c->value)) {
-		mpq_set_d(low, c->value);
-		mpq_sub(low, exact, low);
-		c->low = round_rational(low);
-	}
-	return true;
+	return decided;
 }
 
-void check_range(const struct model *model, const struct coefficient *c, const struct resolvent *resolvent,
-		 const char *what)
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, bool two_words, struct place at,
+				 const char *what)
 {
-	if (isfinite(c->value))
+	struct number number = { .count = count, .list = list, .t = t };
+	struct coefficient c;
+	bool isolated;
+	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
+		undecided(at, what, isolated);
+	return c;
+}
+
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
+				  const char *what)
+{
+	struct started alone = { .response = response };
+	mpq_init(alone.start);
+	return started_value(1, &alone, tau, two_words, at, what);
+}
+
+void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list,
+			const char *what)
+{
+	if (isfinite(c->value) || count == 0)
 		return;
-	struct culprit pole = find_culprit(model, resolvent_spectrum(resolvent));
+	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
 	error(model->request.step_at, pole.grows ? "a smaller step would do" : NULL,
 	      "%s is beyond the range of %s: pole %s, h = %s s", what, target_name(), pole_of(&pole),
 	      readable_text(model->h));
-}
-
-/* ---- among the states of a load ---- */
-
-struct coefficient *growth_of_load(const struct step *step, const struct load *load, mpq_srcptr tau, bool two_words)
-{
-	const int n = load->columns;
-	struct coefficient *cell = ARRAY(struct coefficient, (size_t)n * (size_t)n);
-	struct entry entry = { .taylor = taylor_of(n, load_matrix(load), tau) };
-	const struct number number = { .count = 1, .entry = &entry };
-	mpq_init(entry.place.weight);
-	mpq_set_ui(entry.place.weight, 1, 1);
-	for (int i = 0; i < n * n; i++) {
-		entry.place.row = i / n;
-		entry.place.column = i % n;
-		if (!round_number(&number, two_words, &cell[i]))
-			undecided(step->model->request.step_at, column_text(load, i / n));
-	}
-	return cell;
 }

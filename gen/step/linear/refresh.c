@@ -15,7 +15,8 @@ enum {
 	REFRESH_STEPS = 32,         /* from refresh to refresh, where the table is small */
 	FEWEST_STEPS = 8,           /* below, functions in every step are about as good */
 	TABLE_NUMBERS = 2048,       /* of a table that the cache shares with other data: 16 KB */
-	MOST_GROWTH = 16            /* |a| l h: near the ends of the range a refresh leaves it before its load does */
+	MOST_GROWTH = 16,           /* |a| l h: near the ends of the range a refresh leaves it before its load does */
+	TAYLOR_PRECISION = 2048     /* beyond, residues */
 };
 
 /* ---- which loads, and how many steps ---- */
@@ -217,44 +218,65 @@ static void power_of_time(int k, int j, mpq_srcptr tau, mpq_ptr value)
 
 struct block_source {               /* of a block */
 	const struct linear *system;
-	struct taylor *taylor;
+	struct resolvent *resolvent;
+	struct taylor *taylor;      /* NULL: residues */
 	struct layout layout;
 };
 struct column {                     /* of L, in one row */
 	int precision;              /* 0: not asked for */
 	mpfi_t value;
+	struct response *response;
 };
 struct row {                        /* what a load adds to a state */
 	struct block_source *source;
 	int state, load, columns;   /* of the block */
 	struct column *column;
+	mpq_srcptr h;
 };
 
 static struct block_source source_of_block(const struct step *step, const struct linear *system)
 {
-	struct block_source source = { .system = system, .layout = layout_of(system, 0) };
-	source.taylor = taylor_of(source.layout.size, augmented_matrix(&source.layout, system, 0), step->model->h);
+	bool full = system->states == step->branch->system.states;
+	struct block_source source = { .system = system,
+				       .resolvent = full ? step->branch->resolvent : resolvent_of(system),
+				       .layout = layout_of(system, 0) };
+	if (system->states > LIMIT_RESIDUE_STATES)
+		source.taylor = taylor_of(source.layout.size,
+					  augmented_matrix(&source.layout, system, 0), step->model->h);
 	return source;
+}
+
+static bool enclose_by_residues(struct row *row, int k, int precision)
+{
+	struct column *column = &row->column[k];
+	RATIONAL exact = ZERO;
+	if (!column->response)
+		column->response = response_of_load(row->source->resolvent, row->source->system, 0, row->state,
+						    row->load, k);
+	bool rational = response_exact(column->response, row->h, exact);
+	if (rational)
+		mpfi_set_q(column->value, exact);
+	return rational || response_enclose(column->response, row->h, precision, column->value);
 }
 
 static bool enclose_column(struct row *row, int k, int precision)
 {
 	const struct block_source *source = row->source;
 	struct column *column = &row->column[k];
-	const int at = source->layout.load[row->load] + k;
-	RATIONAL exact = ZERO;
 	if (column->precision == precision)
 		return true;
 	column->precision = 0;
 	mpfi_set_prec(column->value, precision);
-	if (taylor_exact(source->taylor, row->state, at, exact))
-		mpfi_set_q(column->value, exact);
-	else if (taylor_enclose(source->taylor, precision))
-		taylor_entry(source->taylor, row->state, at, column->value);
-	else
-		return false;
-	column->precision = precision;
-	return true;
+	bool good;
+	if (!source->taylor || precision > TAYLOR_PRECISION) {
+		good = enclose_by_residues(row, k, precision);
+	} else {
+		good = taylor_enclose(source->taylor, precision);
+		if (good)
+			taylor_entry(source->taylor, row->state, source->layout.load[row->load] + k, column->value);
+	}
+	column->precision = good ? precision : 0;
+	return good;
 }
 
 /* ---- L E_l, rounded ---- */
@@ -312,7 +334,7 @@ static void fill_row(const struct step *step, struct block_source *source, int s
 {
 	struct refresh *refresh = step->refresh;
 	int columns = source->system->load[load].columns;
-	struct row row = { source, state, load, columns, ARRAY(struct column, columns) };
+	struct row row = { source, state, load, columns, ARRAY(struct column, columns), step->model->h };
 	for (int k = 0; k < columns; k++)
 		mpfi_init(row.column[k].value);
 	for (int l = 0; l < refresh->steps; l++)

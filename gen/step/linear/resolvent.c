@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* P(s) = M s^2 + C s + K of M q'' + C q' + K q = f, scaled into Z[s] row by row; B = det P, and P^-1 = adj P / B, which
- * transfer functions are made of. */
+/* The Laplace images N/D of what a step is made of. From M q'' + C q' + K q = f(tau):
+ *     P(s) Q(s) = (M s + C) q(0) + M v(0) + F(s),      V(s) = s Q(s) - q(0),      P^-1 = adj P / B
+ * Whatever acts during a step is an excitation: a sum of tau^m e^{a tau} cos(w tau) and sin(w tau). With u = s - a
+ * their images are m! Re (u + iw)^{m+1} / (u^2 + w^2)^{m+1}, and the same with Im. Everything is scaled into Z[s]. */
 #include "inner.h"
 
 struct resolvent {
@@ -10,6 +12,8 @@ struct resolvent {
 	int parts;
 	struct poly *part;
 	mpz_t *row;                 /* scale of each row */
+	struct linear requested;    /* whose responses are kept */
+	struct response **kept, *none;
 };
 
 /* ---- scaling ---- */
@@ -25,6 +29,21 @@ static void scaled_integer(mpz_ptr z, mpz_srcptr factor, mpq_srcptr q)
 {
 	mpz_divexact(z, factor, mpq_denref(q));
 	mpz_mul(z, z, mpq_numref(q));
+}
+
+static struct poly constant_poly(unsigned long value)
+{
+	struct poly p = poly_new(1);
+	mpz_set_ui(p.c[0], value);
+	return p;
+}
+
+static struct poly poly_power(struct poly p, int exponent)
+{
+	struct poly power = constant_poly(1);
+	for (int i = 0; i < exponent; i++)
+		power = poly_mul(power, p);
+	return power;
 }
 
 struct resolvent *resolvent_of(const struct linear *system)
@@ -62,6 +81,21 @@ static void need_adjugate(struct resolvent *r)
 	polymat_adjugate(r->P, &r->B, &r->adj);
 }
 
+struct response **response_kept(struct resolvent *r, const struct linear *system, int number)
+{
+	if (system->states > LIMIT_RESIDUE_STATES) {
+		r->none = NULL;
+		return &r->none;
+	}
+	if (!r->kept || r->requested.load != system->load || r->requested.heldK != system->heldK ||
+			r->requested.heldC != system->heldC) {
+		const int columns = system->states + system->segments * load_columns(system);
+		r->requested = *system;
+		r->kept = ARRAY(struct response *, (size_t)(system->states * columns));
+	}
+	return &r->kept[number];
+}
+
 void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient)
 {
 	INTEGER scale = INTEGER_ZERO;
@@ -93,12 +127,152 @@ static void expect_eigenvalues(const struct resolvent *r, struct spectrum *spect
 struct spectrum *resolvent_spectrum(const struct resolvent *r)
 {
 	struct spectrum *spectrum = spectrum_of_product(r->parts, r->part);
-	if (r->system->states > FEW_STATES && spectrum->precision == 0)
+	if (r->system->states > LIMIT_RESIDUE_STATES && spectrum->precision == 0)
 		expect_eigenvalues(r, spectrum);
 	return spectrum;
 }
 
-/* ---- transfer functions ---- */
+/* ---- excitations ---- */
+
+struct oscillation {                /* u = s - a, scaled by the common denominator q of a and w */
+	mpz_t q, W;                 /* W = q w */
+	struct poly U, D;           /* U = q u; D = q^2 (u^2 + w^2), or U itself where w = 0 */
+};
+
+static struct oscillation oscillation_of(const struct excitation *e)
+{
+	struct oscillation o;
+	mpz_init(o.q);
+	mpz_init(o.W);
+	mpz_lcm(o.q, mpq_denref(e->a), mpq_denref(e->w));
+	scaled_integer(o.W, o.q, e->w);
+	o.U = poly_new(2);
+	scaled_integer(o.U.c[0], o.q, e->a);
+	mpz_neg(o.U.c[0], o.U.c[0]);
+	mpz_set(o.U.c[1], o.q);
+	o.D = o.U;
+	if (mpz_sgn(o.W) != 0) {
+		o.D = poly_mul(o.U, o.U);
+		mpz_addmul(o.D.c[0], o.W, o.W);
+	}
+	return o;
+}
+
+/* Numerators over D^{m+1} of tau^m e^{a tau} cos(w tau) (or, w = 0, alone) and sin(w tau) */
+static void transform(const struct oscillation *o, int m, struct poly *cosine, struct poly *sine)
+{
+	struct poly re = constant_poly(1), im = poly_new(0);
+	INTEGER factor = INTEGER_ZERO;
+	mpz_fac_ui(factor, (unsigned long)m);
+	for (int k = 0; k <= m; k++) {
+		struct poly keep = re;
+		mpz_mul(factor, factor, o->q);
+		if (mpz_sgn(o->W) == 0)
+			continue;
+		re = poly_sub(poly_mul(re, o->U), poly_scale(im, o->W));
+		im = poly_add(poly_mul(im, o->U), poly_scale(keep, o->W));
+	}
+	*cosine = poly_scale(re, factor);
+	*sine = poly_scale(im, factor);
+}
+
+/* scale * (numerator over D^powers) of sum_m factor[m][0] cos + factor[m][1] sin; `stride` apart in `factor` */
+static struct poly excitation_image(const struct excitation *e, const struct oscillation *o, const mpq_t *factor,
+				    int stride, mpz_srcptr scale)
+{
+	struct poly sum = poly_new(0), part[2];
+	INTEGER z = INTEGER_ZERO;
+	for (int m = 0; m < e->powers; m++) {
+		transform(o, m, &part[0], &part[1]);
+		struct poly rest = poly_power(o->D, e->powers - 1 - m);
+		for (int k = 0; k < 2; k++) {
+			if (mpq_sgn(factor[(2 * m + k) * stride]) == 0)
+				continue;
+			scaled_integer(z, scale, factor[(2 * m + k) * stride]);
+			sum = poly_add(sum, poly_mul(poly_scale(part[k], z), rest));
+		}
+	}
+	return sum;
+}
+
+struct excitation excitation_new(int n, mpq_srcptr a, mpq_srcptr w, int powers)
+{
+	mpq_srcptr zero = a && w ? NULL : rationals(1)[0];
+	struct excitation e = { a ? a : zero, w ? w : zero, powers, NULL, NULL };
+	e.force = rationals(2 * (size_t)powers * (size_t)n);
+	e.direct = rationals(2 * (size_t)powers);
+	return e;
+}
+
+/* ---- one image ---- */
+
+struct denominators {               /* of the denominators of all excitations */
+	struct oscillation *o;
+	struct poly all, *without;  /* ... and of all but one */
+};
+
+static struct denominators find_denominators(const struct question *ask)
+{
+	size_t count = (size_t)ask->excitations;
+	struct denominators p = { ARRAY(struct oscillation, count), constant_poly(1), ARRAY(struct poly, count) };
+	for (int l = 0; l < ask->excitations; l++) {
+		p.o[l] = oscillation_of(&ask->excitation[l]);
+		p.without[l] = constant_poly(1);
+	}
+	for (int l = 0; l < ask->excitations; l++) {
+		struct poly power = poly_power(p.o[l].D, ask->excitation[l].powers);
+		p.all = poly_mul(p.all, power);
+		for (int other = 0; other < ask->excitations; other++)
+			if (other != l)
+				p.without[other] = poly_mul(p.without[other], power);
+	}
+	return p;
+}
+
+static void question_scale(const struct question *ask, const struct linear *system, mpz_ptr scale)
+{
+	mpz_set_ui(scale, 1);
+	common_denominator(scale, system->states, ask->initial);
+	for (int l = 0; l < ask->excitations; l++) {
+		const struct excitation *e = &ask->excitation[l];
+		common_denominator(scale, 2 * e->powers * system->n, e->force);
+		common_denominator(scale, 2 * e->powers, e->direct);
+	}
+}
+
+/* row k of (M s + C) q(0) + M v(0), row-scaled, for a unit value of one state */
+static struct poly unit_state(const struct resolvent *r, int k, int state)
+{
+	const struct linear *system = r->system;
+	int cell = k * system->n + system->coord[state];
+	bool velocity = state >= system->n;
+	struct poly x = poly_new(2);
+	scaled_integer(x.c[0], r->row[k], velocity ? system->M[cell] : system->C[cell]);
+	if (!velocity)
+		scaled_integer(x.c[1], r->row[k], system->M[cell]);
+	poly_trim(&x);
+	return x;
+}
+
+/* scale * (all denominators) * row k of the right-hand side */
+static struct poly right_side(const struct resolvent *r, const struct question *ask, const struct denominators *p,
+			      mpz_srcptr scale, int k)
+{
+	struct poly start = poly_new(0), sum = poly_new(0);
+	INTEGER factor = INTEGER_ZERO;
+	for (int j = 0; ask->initial && j < r->system->states; j++) {
+		if (mpq_sgn(ask->initial[j]) == 0)
+			continue;
+		scaled_integer(factor, scale, ask->initial[j]);
+		start = poly_add(start, poly_scale(unit_state(r, k, j), factor));
+	}
+	for (int l = 0; l < ask->excitations; l++) {
+		const struct excitation *e = &ask->excitation[l];
+		struct poly image = excitation_image(e, &p->o[l], e->force + k, r->system->n, scale);
+		sum = poly_add(sum, poly_mul(poly_scale(image, r->row[k]), p->without[l]));
+	}
+	return poly_add(sum, poly_mul(start, p->all));
+}
 
 /* row i of adj P times a vector of polynomials */
 static struct poly adjugate_row(const struct resolvent *r, int i, const struct poly *x)
@@ -110,60 +284,40 @@ static struct poly adjugate_row(const struct resolvent *r, int i, const struct p
 	return sum;
 }
 
-/* scale times q_0 + q_1 s + ... */
-static struct poly scaled_poly(int powers, const mpq_t *const *q, int at, mpz_srcptr scale)
-{
-	struct poly p = poly_new(powers);
-	for (int m = 0; m < powers; m++)
-		scaled_integer(p.c[m], scale, q[m][at]);
-	poly_trim(&p);
-	return p;
-}
-
-/* Without common factors, N and D primitive */
-static struct transfer_function reduced(struct poly N, struct poly D, mpz_srcptr scale)
-{
-	struct transfer_function t = { .N = N, .D = poly_new(1) };
-	RATIONAL content = ZERO;
-	mpq_init(t.scale);
-	mpz_set_ui(mpq_numref(t.scale), 1);
-	mpz_set(mpq_denref(t.scale), scale);
-	mpz_set_ui(t.D.c[0], 1);
-	if (N.length == 0)
-		return t;
-	const struct poly common = poly_gcd(N, D);
-	t.N = poly_primitive(poly_divide(N, common), mpq_numref(content));
-	t.D = poly_primitive(poly_divide(D, common), mpq_denref(content));
-	mpq_canonicalize(content);
-	mpq_mul(t.scale, t.scale, content);
-	return t;
-}
-
-struct transfer_function transfer_function_of(struct resolvent *r, const mpq_t *row, int powers,
-					      const mpq_t *const *force, const mpq_t *const *direct)
+struct response *image_of(struct resolvent *r, const struct question *ask)
 {
 	const struct linear *system = r->system;
-	const int n = system->n;
-	struct poly *x = ARRAY(struct poly, n), N = poly_new(0);
-	INTEGER scale = INTEGER_ZERO, rows = INTEGER_ZERO, factor = INTEGER_ZERO;
+	int n = system->n;
 	need_adjugate(r);
-	mpz_set_ui(scale, 1);
+	INTEGER scale = INTEGER_ZERO, factor = INTEGER_ZERO, rows = INTEGER_ZERO;
 	mpz_set_ui(rows, 1);
-	for (int m = 0; m < powers; m++) {
-		common_denominator(scale, n, force[m]);
-		common_denominator(scale, 1, direct[m]);
-	}
-	common_denominator(rows, system->states, row);
+	question_scale(ask, system, scale);
+	common_denominator(rows, system->states, ask->row);
+	struct denominators p = find_denominators(ask);
+	struct poly *x = ARRAY(struct poly, n), N = poly_new(0), D = poly_mul(r->B, p.all), direct = poly_new(0);
 	for (int k = 0; k < n; k++)
-		x[k] = poly_scale(scaled_poly(powers, force, k, scale), r->row[k]);
+		x[k] = right_side(r, ask, &p, scale, k);
 	for (int i = 0; i < system->states; i++) {
-		if (mpq_sgn(row[i]) == 0)
+		if (mpq_sgn(ask->row[i]) == 0)
 			continue;
-		scaled_integer(factor, rows, row[i]);
-		const struct poly image = adjugate_row(r, system->coord[i], x);
-		N = poly_add(N, poly_scale(i >= n ? poly_shift(image, 1) : image, factor));
+		int coord = system->coord[i];
+		struct poly image = adjugate_row(r, coord, x);
+		if (i >= n)                     /* s Q - q(0) */
+			image = poly_shift(image, 1);
+		if (i >= n && ask->initial) {
+			scaled_integer(factor, scale, ask->initial[coord]);
+			image = poly_sub(image, poly_scale(D, factor));
+		}
+		scaled_integer(factor, rows, ask->row[i]);
+		N = poly_add(N, poly_scale(image, factor));
 	}
-	N = poly_add(N, poly_scale(poly_mul(scaled_poly(powers, direct, 0, scale), r->B), rows));
-	mpz_mul(scale, scale, rows);
-	return reduced(N, r->B, scale);
+	for (int l = 0; l < ask->excitations; l++) {
+		const struct excitation *e = &ask->excitation[l];
+		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], e->direct, 1, scale), p.without[l]));
+	}
+	N = poly_add(N, poly_scale(poly_mul(direct, r->B), rows));
+	RATIONAL unit = ZERO;
+	mpz_set_ui(mpq_numref(unit), 1);
+	mpz_mul(mpq_denref(unit), scale, rows);
+	return response_of(unit, N, D);
 }

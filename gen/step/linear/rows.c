@@ -4,7 +4,6 @@
  * the load states + that of the samples so far, every factor rounded once from its closed form at l h. What goes on to
  * the next block is a step of K h, in the form of the model's own step. */
 #include "inner.h"
-#include "model/tunable/elsewhere.h"
 #include "rows.h"
 
 #include <math.h>
@@ -25,155 +24,114 @@ int held_columns(const struct linear *system)
 
 /* ---- numbers ---- */
 
-struct flows {                      /* e^{A l h} of the states, loads and inputs */
-	const struct step *step;
-	struct layout layout;
-	struct taylor **after;      /* l steps; NULL: not asked for */
-};
-/* What a column or a sample gives an output: at most three states, loads and inputs from rest, each from its step on */
-enum { STARTS = 3 };
+/* What a column or a sample gives an output: at most three responses from rest, each from its own start. */
+enum { RESPONSES = 3 };
 struct share {
-	const struct output *output;
-	int count, start[STARTS];
-	mpq_t *x[STARTS];
+	int count;
+	struct started list[RESPONSES];
 };
 
-static struct flows flows_of(const struct step *step, int steps)
+static void add_started(struct share *share, struct response *response, long k, mpq_srcptr h)
 {
-	const struct linear *system = &step->branch->system;
-	bool *all = ARRAY(bool, system->loads);
-	for (int l = 0; l < system->loads; l++)
-		all[l] = true;
-	return (struct flows){ step, layout_with(system, 0, all), ARRAY(struct taylor *, steps + 1) };
-}
-
-static struct taylor *flow_after(const struct flows *f, int steps)
-{
-	const struct linear *system = &f->step->branch->system;
-	RATIONAL tau = RATIO(steps, 1);
-	mpq_mul(tau, tau, f->step->model->h);
-	if (!f->after[steps])
-		f->after[steps] = steps % 2 ? taylor_of(f->layout.size, augmented_matrix(&f->layout, system, 0), tau)
-					    : taylor_doubled(flow_after(f, steps / 2));
-	return f->after[steps];
-}
-
-static mpq_t *add_start(const struct flows *f, struct share *share, int start)
-{
-	share->start[share->count] = start;
-	return share->x[share->count++] = rationals(f->layout.size);
+	struct started *started = &share->list[share->count++];
+	started->response = response;
+	mpq_init(started->start);
+	mpq_set_si(started->start, k, 1);
+	mpq_mul(started->start, started->start, h);
 }
 
 /* u = (value + slope tau/h), slope in units of the sample */
-static void add_input(const struct flows *f, struct share *share, int input, int start, long value, long slope)
+static void add_input(struct share *share, const struct step *step, const struct output *output, int input, long start,
+		      long value, long slope)
 {
-	mpq_t *x = add_start(f, share, start) + f->layout.input[input];
-	mpq_set_si(x[0], value, 1);
-	if (!f->step->branch->system.input[input].hold)
-		return;
-	mpq_set_si(x[1], slope, 1);
-	mpq_div(x[1], x[1], f->step->model->h);
+	mpq_srcptr h = step->model->h;
+	RATIONAL u = RATIO(value, 1), rate = RATIO(slope, 1);
+	mpq_div(rate, rate, h);
+	add_started(share, output_of_input(step->branch->resolvent, &step->branch->system, output, input, u, rate),
+		    start, h);
 }
 
 /* A held sample lasts for its step; of ramps it is the top of a triangle over the step before it and the one after. */
-static struct share share_of_sample(const struct flows *f, const struct output *output, int input)
+static struct share share_of_sample(const struct step *step, const struct output *output, int input)
 {
-	struct share share = { .output = output };
-	bool ramp = f->step->branch->system.input[input].hold;
-	add_input(f, &share, input, 0, !ramp, ramp);
-	add_input(f, &share, input, 1, ramp ? 0 : -1, ramp ? -2 : 0);
+	struct share share = { 0 };
+	bool ramp = step->branch->system.input[input].hold;
+	add_input(&share, step, output, input, 0, !ramp, ramp);
+	add_input(&share, step, output, input, 1, ramp ? 0 : -1, ramp ? -2 : 0);
 	if (ramp)
-		add_input(f, &share, input, 2, 0, 1);
+		add_input(&share, step, output, input, 2, 0, 1);
 	return share;
 }
 
 /* The ramp down from the sample before the block */
-static struct share share_of_sample_before(const struct flows *f, const struct output *output, int input)
+static struct share share_of_sample_before(const struct step *step, const struct output *output, int input)
 {
-	struct share share = { .output = output };
-	add_input(f, &share, input, 0, 1, -1);
-	add_input(f, &share, input, 1, 0, 1);
+	struct share share = { 0 };
+	add_input(&share, step, output, input, 0, 1, -1);
+	add_input(&share, step, output, input, 1, 0, 1);
 	return share;
 }
 
 /* Kicks and drifts have momenta for velocities. */
-static struct share share_of_state(const struct flows *f, const struct output *output, int state)
+static struct share share_of_state(const struct step *step, const struct output *output, int state)
 {
-	const struct step *step = f->step;
 	const struct linear *system = &step->branch->system;
-	struct share share = { .output = output };
-	mpq_t *x = add_start(f, &share, 0);
-	mpq_set_ui(x[state], 1, 1);
+	struct share share = { 0 };
+	mpq_t *initial = rationals(system->states);
+	mpq_set_ui(initial[state], 1, 1);
 	if (step->linear.kicks.momenta && state >= system->n)
-		mpq_inv(x[state], step->linear.kicks.mass[system->coord[state]]);
+		mpq_inv(initial[state], step->linear.kicks.mass[system->coord[state]]);
+	add_started(&share, output_of_states(step->branch->resolvent, output, initial), 0, step->model->h);
 	return share;
 }
 
 /* Of a load that the step leaves out, the forced part starts with it. */
-static struct share share_of_load(const struct flows *f, const struct output *output, int column)
+static struct share share_of_load(const struct step *step, const struct output *output, int column)
 {
-	const struct linear *system = &f->step->branch->system;
-	struct share share = { .output = output };
-	mpq_t *x = add_start(f, &share, 0);
+	const struct linear *system = &step->branch->system;
+	struct share share = { 0 };
 	int first, columns = load_columns(system), l = load_of_column(system, column, &first);
-	for (int i = 0; i < system->states && is_forced(f->step, column); i++)
-		mpq_set(x[i], f->step->forced->exact[i * columns + column]);
-	mpq_set_ui(x[f->layout.load[l] + column - first], 1, 1);
+	mpq_t *initial = is_forced(step, column) ? rationals(system->states) : NULL;
+	for (int i = 0; i < system->states && initial; i++)
+		mpq_set(initial[i], step->forced->exact[i * columns + column]);
+	add_started(&share, output_of_load(step->branch->resolvent, system, output, l, column - first, initial),
+		    0, step->model->h);
 	return share;
-}
-
-/* Adds row e^{A l h} x to a number, where row and x are not 0 */
-static void add_products(const struct flows *f, struct number *number, struct entry *entry, const mpq_t *row, int steps,
-			 const mpq_t *x)
-{
-	const int n = f->layout.size;
-	for (int i = 0; i < n * n; i++) {
-		if (mpq_sgn(row[i / n]) == 0 || mpq_sgn(x[i % n]) == 0)
-			continue;
-		struct entry *e = &entry[number->count++];
-		*e = (struct entry){ flow_after(f, steps), { .row = i / n, .column = i % n } };
-		mpq_init(e->place.weight);
-		mpq_mul(e->place.weight, row[i / n], x[i % n]);
-	}
 }
 
 /* After `steps` steps, of what has started before that: what starts at that very time shows later. A number that is not
  * finite leaves the statement. */
-static struct coefficient value_of(const struct flows *f, const struct share *share, int steps, bool two_words)
+static struct coefficient value_of(const struct step *step, const struct share *share, int steps, bool two_words)
 {
-	const struct linear *system = &f->step->branch->system;
+	struct place at = step->model->request.step_at;
 	struct coefficient c;
-	struct entry *entry = ARRAY(struct entry, (size_t)(STARTS * f->layout.size * f->layout.size));
-	struct number number = { .entry = entry };
-	RATIONALS *row = rationals(f->layout.size);
-	row_of_output(&f->layout, system, share->output, system->segments, 0, row);
-	for (int k = 0; k < share->count && share->start[k] < steps; k++)
-		add_products(f, &number, entry, row, steps - share->start[k], share->x[k]);
-	if (!round_number(&number, two_words, &c))
-		undecided(f->step->model->request.step_at, "a number of a row");
+	int count = share->count < steps ? share->count : steps;
+	RATIONAL t = RATIO(steps, 1);
+	mpq_mul(t, t, step->model->h);
+	c = started_value(count, share->list, t, two_words, at, "a number of a row");
 	if (!isfinite(c.value))
-		report_range(f->step);
+		report_range(step);
 	return c;
 }
 
 /* Near the least number of the type a product takes many times as long, and no sum would show it. */
-static double number_of(const struct flows *f, const struct share *share, int steps)
+static double number_of(const struct step *step, const struct share *share, int steps)
 {
-	const double least = f->step->model->request.single ? 0x1p-110 : 0x1p-960;
-	double value = value_of(f, share, steps, false).value;
+	const double least = step->model->request.single ? 0x1p-110 : 0x1p-960;
+	double value = value_of(step, share, steps, false).value;
 	return fabs(value) < least ? 0 : value;
 }
 
 /* ---- the tables of a block ---- */
 
-typedef struct share share_maker(const struct flows *f, const struct output *output, int index);
+typedef struct share share_maker(const struct step *step, const struct output *output, int index);
 struct requested {                  /* a column to be, or a sample */
 	struct operand operand;
 	struct share *share;        /* per output */
 	double *value;              /* [row][output] */
 };
 struct asking {
-	const struct flows *flows;
+	const struct step *step;
 	const struct rows *rows;
 	int count;
 	struct requested *requested;
@@ -186,9 +144,10 @@ static void ask(struct asking *a, enum operand_kind kind, int index, share_maker
 	*requested = (struct requested){ { kind, index }, ARRAY(struct share, outputs),
 				 ARRAY(double, (size_t)(a->rows->count * outputs)) };
 	for (int o = 0; o < outputs; o++)
-		requested->share[o] = share_of(a->flows, &a->flows->step->model->output[o], source);
+		requested->share[o] = share_of(a->step, &a->step->model->output[o], source);
 }
 
+/* Row by row: what poles give at one time serves every column. */
 static void evaluate_all(const struct asking *a)
 {
 	int outputs = a->rows->outputs;
@@ -196,7 +155,7 @@ static void evaluate_all(const struct asking *a)
 		for (int k = 0; k < a->count; k++)
 			for (int o = 0; o < outputs; o++)
 				a->requested[k].value[l * outputs + o] =
-					number_of(a->flows, &a->requested[k].share[o], l + 1);
+					number_of(a->step, &a->requested[k].share[o], l + 1);
 }
 
 static void keep_column(struct rows *rows, const struct requested *requested)
@@ -208,11 +167,11 @@ static void keep_column(struct rows *rows, const struct requested *requested)
 		rows->column[rows->columns++] = (struct row_column){ requested->operand, requested->value };
 }
 
-static void fill_columns(const struct flows *f, struct rows *rows)
+static void fill_columns(const struct step *step, struct rows *rows)
 {
-	const struct linear *system = &f->step->branch->system;
+	const struct linear *system = &step->branch->system;
 	int loads = load_columns(system), held = held_columns(system), columns = system->states + loads + held;
-	struct asking a = { f, rows, 0, ARRAY(struct requested, (size_t)(columns + system->inputs)) };
+	struct asking a = { step, rows, 0, ARRAY(struct requested, (size_t)(columns + system->inputs)) };
 	for (int j = 0; j < system->states; j++)
 		ask(&a, OPERAND_STATE, j, share_of_state, j);
 	for (int k = 0; k < loads; k++)
@@ -234,31 +193,30 @@ static void fill_columns(const struct flows *f, struct rows *rows)
 /* ---- the step of K h ---- */
 
 /* What the samples give the states at the block's end */
-static void fill_inputs(const struct flows *f, int count, struct table *table)
+static void fill_inputs(const struct step *step, int count, struct table *table)
 {
-	const struct linear *system = &f->step->branch->system;
+	const struct linear *system = &step->branch->system;
 	int held = held_columns(system), columns = table->inputs = held + count * system->inputs;
 	table->input = ARRAY(struct coefficient, (size_t)(table->states * columns));
 	for (int i = 0; i < table->states; i++) {
 		struct output state = state_as_output(system, i);
 		struct coefficient *row = table->input + i * columns;
 		for (int j = 0, column = 0; j < system->inputs; j++) {
-			struct share sample = share_of_sample(f, &state, j);
+			struct share sample = share_of_sample(step, &state, j);
 			for (int k = 0; k < count; k++)
-				row[held + k * system->inputs + j] = value_of(f, &sample, count - k, true);
+				row[held + k * system->inputs + j] = value_of(step, &sample, count - k, true);
 			if (!system->input[j].hold)
 				continue;
-			struct share before = share_of_sample_before(f, &state, j);
-			row[column++] = value_of(f, &before, count, true);
+			struct share before = share_of_sample_before(step, &state, j);
+			row[column++] = value_of(step, &before, count, true);
 		}
 	}
 	for (int k = 0; k < table->states * columns; k++)
 		table->input[k].zero = table->input[k].value == 0;
 }
 
-static struct step *block_of(const struct flows *f, int count)
+static struct step *block_of(const struct step *step, int count)
 {
-	const struct step *step = f->step;
 	struct step *block = NEW(struct step);
 	struct wanted *wanted = NEW(struct wanted);
 	struct linear *system = NEW(struct linear);
@@ -273,7 +231,7 @@ static struct step *block_of(const struct flows *f, int count)
 	block->branch = NEW(struct branch);
 	*block->branch = *step->branch;
 	block->branch->full = tables_of(step->model, step->branch->resolvent, system, 1, wanted)[0];
-	fill_inputs(f, count, block->branch->full);
+	fill_inputs(step, count, block->branch->full);
 	block->program = linear_program(block);
 	return block;
 }
@@ -330,9 +288,8 @@ struct attempt {
 static void make_rows(void *context)
 {
 	struct attempt *a = context;
-	const struct flows f = flows_of(a->step, a->rows->count);
-	a->rows->block = block_of(&f, a->rows->count);
-	fill_columns(&f, a->rows);
+	a->rows->block = block_of(a->step, a->rows->count);
+	fill_columns(a->step, a->rows);
 }
 
 /* false: not with so many */

@@ -26,7 +26,7 @@ static void larger_forcing(mpfr_ptr largest, const struct forcing *forcing)
 static void larger_poles(mpfr_ptr largest, const struct resolvent *resolvent)
 {
 	struct spectrum *spectrum = resolvent_spectrum(resolvent);
-	/* fewer bits may bring two iterates of a cluster together for good */
+	/* as the residues begin: fewer bits may bring two iterates of a cluster together for good */
 	if (!spectrum_refine(spectrum, POLE_BITS)) {
 		mpfr_set_inf(largest, 1);
 		return;

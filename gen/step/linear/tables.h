@@ -5,6 +5,7 @@
 
 #include "model/model.h"
 
+struct started;
 struct step;
 struct resolvent;
 
@@ -50,9 +51,13 @@ struct table {                      /* of one time: y(tau) = Phi y + sum of colu
 };
 /* leaves the statement where |p| h is hopeless */
 void check_pole_size(const struct model *model, const struct resolvent *resolvent);
-/* e^{A tau} of a load's states, columns x columns */
-struct coefficient *growth_of_load(const struct step *step, const struct load *load, mpq_srcptr tau, bool two_words);
-/* Block by block. `resolvent`: of the whole */
+/* Rounded, infinite beyond the range; `at` and `what` name it where it cannot be decided. */
+/* their sum */
+struct coefficient started_value(int count, const struct started *list, mpq_srcptr t, bool two_words, struct place at,
+				 const char *what);
+struct coefficient response_value(struct response *response, mpq_srcptr tau, bool two_words, struct place at,
+				  const char *what);
+/* Block by block; by residues, beyond LIMIT_RESIDUE_STATES states by Taylor series. `resolvent`: of the whole */
 struct table **tables_of(const struct model *model, struct resolvent *resolvent, const struct linear *system, int count,
 			 const struct wanted *wanted);
 

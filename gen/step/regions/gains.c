@@ -39,12 +39,14 @@ void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double 
 	for (int l = 0; l < system->loads; l++) {
 		const struct load *load = &system->load[l];
 		int n = load->columns, at = layout->load[l];
-		const struct coefficient *c = at >= 0 ? growth_of_load(step, load, d, low) : NULL;
 		for (int i = 0; i < n * n && at >= 0; i++) {
+			struct response *response = response_of_load_state(load, i / n, i % n);
+			const struct coefficient c = response_value(response, d, low, step->model->request.step_at,
+								    column_text(load, i / n));
 			const int cell = (at + i / n) * layout->size + at + i % n;
-			Phi[cell] = c[i].value;
+			Phi[cell] = c.value;
 			if (low)
-				low[cell] = c[i].low;
+				low[cell] = c.low;
 		}
 	}
 }

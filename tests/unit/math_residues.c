@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Enclosures, and inverse Laplace transforms by companion matrices: what MPFR has from closed forms lies within, and
- * nothing is wider than needed. */
-#include "companion.h"
+/* Enclosures and residues: values that MPFR has from closed forms lie within, and nothing is wider than needed. */
 #include "math_cases.h"
 
 /* ---- enclosures ---- */
@@ -235,7 +233,7 @@ void roots_multiplied_back(void **state)
     mpfr_clears(truth, zero, NULL);
 }
 
-/* ---- inverse Laplace transforms ---- */
+/* ---- residues ---- */
 
 /* e^{a t} ((cosine + linear t) cos(w t) + sine sin(w t)), the terms of 1/((s - a)^2 + w^2)^2 and s/(...)^2 */
 void add_wave(mpfr_ptr sum, mpq_srcptr a, mpq_srcptr w, mpq_srcptr t, mpq_srcptr factor, int power, bool sine)
@@ -258,7 +256,7 @@ void add_wave(mpfr_ptr sum, mpq_srcptr a, mpq_srcptr w, mpq_srcptr t, mpq_srcptr
 
 /* Poles of multiplicity 2 off the real axis, by the tables: with S = s - a,
  * 1/(S^2 + w^2)^2 is e^{a t} (sin(w t) - w t cos(w t))/(2 w^3), S/(S^2 + w^2)^2 is e^{a t} t sin(w t)/(2 w). */
-void transforms_of_double_pairs(void **state)
+void residues_of_double_pairs(void **state)
 {
     mpq_t a, w, t, scale, factor, exact;
     mpfr_t truth;
@@ -286,14 +284,14 @@ void transforms_of_double_pairs(void **state)
         mpq_neg(factor, factor);
         if (!linear)
             add_wave(truth, a, w, t, factor, 1, false);
-        struct companion by = companion_of(scale, N, poly_mul(g, g), t);
-        if (companion_exact(&by, exact)) {
+        struct response *response = response_of(scale, N, poly_mul(g, g));
+        if (response_exact(response, t, exact)) {
             assert_int_equal(mpq_sgn(scale), 0);
             continue;
         }
         int precision = 20 + (int)draw(150);
         mpfi_init2(value, 64 + precision);
-        assert_true(companion_enclose(&by, precision, value));
+        assert_true(response_enclose(response, t, precision, value));
         assert_interval("double pair", n, value, truth);
         mpfi_clear(value);
     }
@@ -302,7 +300,7 @@ void transforms_of_double_pairs(void **state)
 }
 
 /* c/((s - a)(s - b)) is c (e^{a t} - e^{b t})/(a - b) */
-void transforms_of_real_poles(void **state)
+void residues_of_real_poles(void **state)
 {
     mpq_t a, b, t, scale, factor, none;
     mpfr_t truth;
@@ -326,8 +324,7 @@ void transforms_of_real_poles(void **state)
         struct poly D = poly_mul(linear_poly(1, -first), linear_poly(1, -second));
         int precision = 20 + (int)draw(150);
         mpfi_init2(value, 64 + precision);
-        struct companion by = companion_of(scale, one_poly(), D, t);
-        assert_true(companion_enclose(&by, precision, value));
+        assert_true(response_enclose(response_of(scale, one_poly(), D), t, precision, value));
         assert_interval("real poles", n, value, truth);
         mpfi_clear(value);
     }
@@ -335,30 +332,41 @@ void transforms_of_real_poles(void **state)
     mpfr_clear(truth);
 }
 
-/* c (s + a - b)/(s + a)^2 is c (1 - b t) e^{-a t}: 0 at t = 1/b, rational at no other time but 0 */
-void rational_at_one_time(void **state)
+/* sin(r t)/r with r^2 = 2, of one response that is asked again and again: at other times, with more bits or fewer. What
+ * was found for one question is not good enough, or wrong, for the next. */
+void a_response_asked_anew(void **state)
 {
-    mpq_t scale, t, found;
+    mpq_t t, one;
+    mpfr_t root, truth;
+    mpfi_t value;
     (void)state;
-    mpq_inits(scale, t, found, NULL);
+    mpq_inits(t, one, NULL);
+    mpfr_inits2(TRUE_BITS, root, truth, NULL);
+    mpq_set_ui(one, 1, 1);
+    mpfr_sqrt_ui(root, 2, MPFR_RNDN);
+    struct poly D = poly_new(3);
+    mpz_set_ui(D.c[0], 2);
+    mpz_set_ui(D.c[2], 1);
+    struct response *response = response_of(one, one_poly(), D);
     for (int n = 0; n < 60; n++) {
-        const long a = draw_integer(9), b = 1 + (long)draw(20), other = 1 + (long)draw(20);
-        struct poly root = linear_poly(1, a);
-        mpq_set_si(scale, 1 + (long)draw(20), 1 + draw(9));
-        mpq_canonicalize(scale);
-        mpq_set_si(t, 1, (unsigned long)b);
-        struct companion by = companion_of(scale, linear_poly(1, a - b), poly_mul(root, root), t);
-        assert_true(companion_exact(&by, found));
-        assert_int_equal(mpq_sgn(found), 0);
-        mpq_set_si(t, 1, (unsigned long)other);
-        by = companion_of(scale, linear_poly(1, a - b), poly_mul(root, root), t);
-        assert_int_equal(companion_exact(&by, found), a == 0 || other == b);
+        int precision = 20 + (int)draw(200);
+        mpq_set_ui(t, 1 + draw(20), 1 + draw(20));
+        mpq_canonicalize(t);
+        mpfr_mul_q(truth, root, t, MPFR_RNDN);
+        mpfr_sin(truth, truth, MPFR_RNDN);
+        mpfr_div(truth, truth, root, MPFR_RNDN);
+        mpfi_init2(value, 64 + precision);
+        assert_true(response_enclose(response, t, precision, value));
+        assert_interval("asked anew", n, value, truth);
+        assert_narrow("asked anew", n, value, 16 - precision);  /* the phase r t is below 2^5 */
+        mpfi_clear(value);
     }
-    mpq_clears(scale, t, found, NULL);
+    mpq_clears(t, one, NULL);
+    mpfr_clears(root, truth, NULL);
 }
 
 /* c/s^m is c t^{m-1}/(m-1)!, which is a rational number */
-void transforms_of_powers_of_time(void **state)
+void residues_of_powers_of_time(void **state)
 {
     mpq_t scale, t, truth, found;
     (void)state;
@@ -374,11 +382,54 @@ void transforms_of_powers_of_time(void **state)
             mpq_mul(truth, truth, found);
             mpq_mul(truth, truth, t);
         }
-        struct companion by = companion_of(scale, one_poly(), poly_shift(one_poly(), m), t);
-        assert_true(companion_exact(&by, found));
+        struct response *response = response_of(scale, one_poly(), poly_shift(one_poly(), m));
+        assert_true(response_exact(response, t, found));
         if (!mpq_equal(found, truth))
             fail_msg("case %d: s^-%d at %g: %.17g, expected %.17g", n, m, mpq_get_d(t), mpq_get_d(found),
                      mpq_get_d(truth));
     }
     mpq_clears(scale, t, truth, found, NULL);
+}
+
+/* At equal distances, two of one denominator in turn, each from its own start: e^{a t} sin(w t) */
+void responses_along_a_course(void **state)
+{
+    enum { ROWS = 90 };
+    mpq_t a, w, t, scale, shift, one;
+    mpfr_t truth;
+    mpfi_t value;
+    (void)state;
+    mpq_inits(a, w, t, scale, shift, one, NULL);
+    mpfr_init2(truth, TRUE_BITS);
+    mpq_set_ui(shift, 1, 3);
+    mpq_set_ui(one, 1, 1);
+    for (int n = 0; n < 8; n++) {
+        long i = (long)draw(20), j = 1 + (long)draw(40), rows = 1 + (long)draw(20);
+        struct poly D = poly_new(3);            /* 64 ((s + i/8)^2 + (j/4)^2) */
+        mpz_set_si(D.c[0], i * i + 4 * j * j);
+        mpz_set_si(D.c[1], 16 * i);
+        mpz_set_si(D.c[2], 64);
+        mpq_set_si(a, -i, 8);
+        mpq_set_si(w, j, 4);
+        mpq_set_si(scale, 16 * j, 1);
+        mpq_canonicalize(a);
+        mpq_canonicalize(w);
+        struct response *response[] = { response_of(scale, one_poly(), D), response_of(scale, one_poly(), D) };
+        for (int k = 0; k < ROWS; k++)
+            for (int r = 0; r < 2; r++) {
+                mpq_set_si(t, k + (k > ROWS / 2 ? 1 : 0), (unsigned long)rows);         /* one stride is longer */
+                mpq_canonicalize(t);
+                if (r)
+                    mpq_add(t, t, shift);
+                mpfr_set_zero(truth, 1);
+                add_wave(truth, a, w, t, one, 0, true);
+                mpfi_init2(value, 200);
+                assert_true(response_enclose(response[r], t, 128, value));
+                assert_interval("along a course", n, value, truth);
+                assert_narrow("along a course", n, value, -90);
+                mpfi_clear(value);
+            }
+    }
+    mpq_clears(a, w, t, scale, shift, one, NULL);
+    mpfr_clear(truth);
 }
