@@ -162,7 +162,7 @@ static void banner_board(const struct emitter *e)
 	if (unbounded_text(e->step))
 		banner_sentence(e, "There is no bound on the instructions of a step: %s.", unbounded_text(e->step));
 	else
-		banner_sentence(e, "No step takes more instructions, while no number is subnormal, than %s.",
+		banner_sentence(e, "Fitted bound on the instructions of a step by gcc -O2, no number subnormal: %s.",
 				worst_text(e->step));
 }
 

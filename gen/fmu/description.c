@@ -211,7 +211,7 @@ static void print_logging(FILE *to)
 /* Of the model, as an attribute */
 static const char *bound_text(const struct fmu *f)
 {
-	return f->worst ? format(" description=\"No step takes more instructions than %s.\"", f->worst) : "";
+	return f->worst ? format(" description=\"Fitted bound on the instructions of a step: %s.\"", f->worst) : "";
 }
 
 static void print_head_2(FILE *to, const struct fmu *f)

@@ -119,7 +119,7 @@ static void text_board(FILE *to, const struct step *step)
 	if (unbounded_text(step))
 		fprintf(to, "There is no bound on the instructions of a step: %s.\n", unbounded_text(step));
 	else
-		fprintf(to, "No step takes more instructions, while no number is subnormal, than %s.\n",
+		fprintf(to, "Fitted bound on the instructions of a step by gcc -O2, no number subnormal: %s.\n",
 			worst_text(step));
 	if (!b || b->why)
 		return;

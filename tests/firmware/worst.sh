@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # worst.sh PLGEN SOURCE_ROOT: the longest step that a search finds on emulated boards (worst.c), against the bound that
-# --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it. The models are not those to which the
-# bound was fitted. With --table: the table of doc/firmware.md instead.
+# --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it. The bound was not fitted
+# to these models, but for the long chain. With --table: the table of doc/firmware.md instead.
 set -u
 table=
 [ "$1" != --table ] || { table=1; shift; }

@@ -16,7 +16,8 @@ grep -v -e '^#' -e '^$' "$list" | while read -r name _ step as options; do
     "$plgen" --prefix "$as" --step "$step" $options "$folder/$name.spec" |
         sed -n -e "/^struct $as {/,/^};/p" -e "/^enum {.*;/p" -e "/^enum {[^;]*\$/,/;/p" \
             -e "/^void ${as}_step($as \*s)\$/,/^}/p" |
-        sed -e 's/\<float\>/wide/g' -e 's/\<double\>/wide/g' -e 's/pl_accumulatef*(/wide_accumulate(/' \
+        sed -e '/_flush(s); }$/d' -e 's/\<float\>/wide/g' -e 's/\<double\>/wide/g' \
+            -e 's/pl_accumulatef*(/wide_accumulate(/' \
             -e "s/^struct $as {/typedef struct $as $as;\\n&/" -e 's/^void/static void/'
     printf 'static void %s_map(wide *y)\n{\n    %s s = {0};\n    memcpy(s.y, y, sizeof s.y);\n' "$as" "$as"
     printf '    %s_step(&s);\n    memcpy(y, s.y, sizeof s.y);\n}\n' "$as"
