@@ -163,7 +163,7 @@ bundles 'crossings, where it is stiff or not' "$root/tests/series_switching/stop
 # ---- names: of a model that is called as something in the runtime ----
 
 : >log
-for name in real two add multiply rounded growth point walk words_pair sizes clear found; do
+for name in real two add multiply rounded envelope point walk words_pair sizes clear found; do
     for spec in "$root/models/quarter_car_bumps.spec" "$(path_of tests/tunable/changes.spec)"; do
         "$plgen" --bundle --prefix $name -o $name.c "$spec" 2>>log &&
             $run_cc -c $name.c -o named.o >>log 2>&1 || echo "$name" >>log

@@ -19,14 +19,14 @@ if ! command -v g++ >/dev/null 2>&1; then
 	skip 'operations counted' 'g++ is not installed'
 	tap_end
 fi
-for file in series power apply turns peak retune until crossings; do
+for file in series power apply phases peak retune until crossings; do
 	counted -c "$root/runtime/$file.c" -o "$file.o" >>log 2>&1
 done
 
 # stated FILE.spec OPTIONS: multiplications and additions of a step, peaks looked for
 stated() {
 	"$plgen" --explain=json "$@" 2>>log | tr -d '\n' |
-		sed 's/.*"cost"//; s/"board": {[^}]*}//; s/"loads": [^}]*}//; s/"rows": [^}]*}//; s/[^0-9]\{1,\}/ /g' |
+		sed 's/.*"cost"//; s/"\(board\|worst\)": {[^}]*}//g; s/"\(loads\|rows\)": [^}]*}//g; s/[^0-9]\{1,\}/ /g' |
 		awk '{ print $1 + $3, $2 + $4 }'
 }
 
@@ -35,7 +35,7 @@ taken() {
 	name=$1
 	shift
 	"$plgen" "$@" >model.c 2>>log &&
-		counted -DMODEL="$name" "$limits/count.cpp" model.c -x none series.o power.o apply.o turns.o peak.o \
+		counted -DMODEL="$name" "$limits/count.cpp" model.c -x none series.o power.o apply.o phases.o peak.o \
 			retune.o until.o crossings.o -o operations >>log 2>&1 && ./operations 1 1 -1 | tee -a log |
 		sed -n 's/^step \([0-9.]* [0-9.]*\) 0 0 .*/\1/p'
 }
