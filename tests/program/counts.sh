@@ -26,7 +26,8 @@ done
 # stated FILE.spec OPTIONS: multiplications and additions of a step, peaks looked for
 stated() {
 	"$plgen" --explain=json "$@" 2>>log | tr -d '\n' |
-		sed 's/.*"cost"//; s/"\(board\|worst\)": {[^}]*}//g; s/"\(loads\|rows\)": [^}]*}//g; s/[^0-9]\{1,\}/ /g' |
+		sed -e 's/.*"cost"//' -e 's/"\(board\|worst\)": {[^}]*}//g' -e 's/"\(loads\|rows\)": [^}]*}//g' \
+			-e 's/[^0-9]\{1,\}/ /g' |
 		awk '{ print $1 + $3, $2 + $4 }'
 }
 
