@@ -2,6 +2,7 @@
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
 #include "steps.h"
 #include "model/reads.h"
+#include "model/regions/regions.h"
 
 /* The output of a row of that table: NULL behind the last */
 static const struct output *output_of_row(const struct model *model, int row)
@@ -74,6 +75,14 @@ static bool is_wanted(const struct emitter *e, int output)
 	return (!e->at || e->at->output[output]) && is_drawn(e, output) == e->drawn;
 }
 
+/* Of coordinate k: in each region another row where a contact may rest */
+static tape_ref highest_derivative(const struct emitter *e, struct tape *t, int k)
+{
+	const struct switching *s = e->model->switching;
+	return s && s->highest && s->highest[k] >= 0 ? tape_operand(t, TAPE_FRICTION, s->highest[k], 0)
+						     : tape_of_row(t, e->step, e->model->equations.highest[k]);
+}
+
 /* Their values; first the highest derivatives that they read, as locals */
 static struct formulas *formulas_of_outputs(const struct emitter *e)
 {
@@ -95,7 +104,7 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 	for (int k = 0; k < written_model(model)->n; k++)
 		if (r.highest[k])
 			tape_set_local(t, format("accel%d", k + 1),
-				       tape_of_row(t, e->step, model->equations.highest[k]));
+				       highest_derivative(e, t, k));
 	for (int i = 0; i < model->outputs; i++)
 		if (is_wanted(e, i))
 			tape_set(t, e->at ? e->at->output[i] : format("out[%d]", i), value[i], 13,

@@ -63,6 +63,7 @@ struct output *row_of_function(struct building *b, const struct switching *of, c
 struct output *row_of_form(struct building *b, struct form *form);
 /* the same with the highest derivatives that a system gives */
 struct output *row_in_system(struct building *b, const struct linear *system, struct form *form);
+struct output *row_of_highest(struct building *b, const struct linear *system, int coordinate);
 void collect_full(struct building *b);                      /* the equations for all time, atoms kept: b->whole */
 bool assign_equations(struct building *b);                  /* false: it was said which is missing or too many */
 void add_elements(struct building *b, struct segment_equations *s); /* the network's forces to the residuals */

@@ -223,6 +223,17 @@ static bool becomes_row(struct building *b, int index, struct value *value, bool
 	return row;
 }
 
+/* Does it read a highest derivative, which the force of a contact that rests changes? */
+static bool may_be_held(const struct building *b, const struct value *value)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool held = false;
+	for (int i = 0; i < value->rows * value->columns && has_bounces(b->model); i++)
+		for (const struct form_term **term = terms_within(value->cell[i], seen); *term; term++)
+			held = held || is_highest(&b->model->frame, &(*term)->basis);
+	return held;
+}
+
 static void name_outputs(struct building *b)
 {
 	struct model *model = b->model;
@@ -232,6 +243,7 @@ static void name_outputs(struct building *b)
 			continue;
 		bool row = is_row(b, index), reads_slider_force = false;
 		struct output_work work = { b, s->value, row ? b->segment_equations->output[index] : NULL };
+		row = row && !(b->model->switching && may_be_held(b, work.value));
 		if (!row)
 			statement_guard(collect_left, &work);
 		row = row || becomes_row(b, index, work.value, &reads_slider_force);
@@ -346,6 +358,14 @@ struct output *row_in_system(struct building *b, const struct linear *system, st
 			add_highest(model, system, inverse, highest,
 				    form->term[i].basis.index, form->term[i].factor, row);
 	return row;
+}
+
+struct output *row_of_highest(struct building *b, const struct linear *system, int coordinate)
+{
+	struct basis basis = { .kind = BASIS_COORD, .index = coordinate, .order = 1 };
+	if (state_of(b->model, &basis) >= 0)
+		basis.order = 2;
+	return row_in_system(b, system, form_unit(basis));
 }
 
 /* ---- outputs that are not linear ---- */

@@ -43,6 +43,30 @@ for mass in 0.3 0.5 1 2 3 5; do
 	done
 done
 
+# What rests has the acceleration 0, and not that of its equation alone; so has what is made of it.
+for friction in '' ' + friction(a'"'"', 0.2)'; do
+	cat >rests.spec <<-END
+		model rests
+		coord a, b
+		init a = 0.2, b' = 0.5
+		2*a'' + 0.3*(a' - b') + 12*(a - b) + 30*a$friction = 0
+		b'' + 0.3*(b' - a') + 12*(b - a) = 5
+		stop between b, ground at 0.02 restitution 0.3
+		output a, b, a', b', b'', twice = 2*b'' - a
+		step 0.01
+	END
+	"$plgen" -o rests.c rests.spec >log 2>&1 &&
+		$run_cc -I"$root/runtime" -DMODEL=rests "$root/runtime/host/plmain.c" rests.c "$archive" -lm -o rests \
+			>>log 2>&1 && ./rests 2 >rows.csv 2>>log &&
+		awk -F, 'NR > 1 { rests = $3 == 0.02 && $5 == 0; resting += rests
+				expected = rests ? 0 : 5 - 0.3*($5 - $4) - 12*($3 - $2)
+				off = $6 - expected; off = off < 0 ? -off : off; worst = off > worst ? off : worst
+				off = $7 - (2*expected - $2); off = off < 0 ? -off : off; worst = off > worst ? off : worst }
+			END { printf "# off by %g, at most 1e-12; %d rows rest, at least 50\n", worst, resting
+				exit !(worst <= 1e-12 && resting >= 50 && NR == 202) }' rows.csv >>log
+	result $? "the acceleration of what rests$friction"
+done
+
 # Three that lie on each other are dropped: --solution follows more than a thousand impacts at one instant
 cat >three.spec <<-END
 	model balls

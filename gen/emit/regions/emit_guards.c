@@ -165,13 +165,13 @@ void emit_friction_forces(const struct emitter *e)
 	double *friction_force = friction_forces_of(e->step), **row = ARRAY(double *, (size_t)s->regions);
 	const char **name = ARRAY(const char *, (size_t)s->transmitted_forces);
 	for (int i = 0; i < s->transmitted_forces; i++) {
-		const struct node *node = s->transmitted[i]->node;
-		const char *text = text_between(node->start, node->end);
-		name[i] = s->transmitted[i]->function == FN_SLIDE ? format("velocity of %s", text) : text;
+		const struct atom *a = s->transmitted[i];
+		const char *text = a ? text_between(a->node->start, a->node->end) : "a highest derivative";
+		name[i] = a && a->function == FN_SLIDE ? format("velocity of %s", text) : text;
 	}
 	for (int r = 0; r < s->regions; r++)
 		row[r] = friction_force + r * s->transmitted_forces * size;
 	put_matrices(e, "friction_forces",
-		     "Friction force in each region: this row times x", s->regions, s->transmitted_forces, size, row,
+		     "In each region what outputs read of friction, and of what rests: this row times x", s->regions, s->transmitted_forces, size, row,
 		     name);
 }

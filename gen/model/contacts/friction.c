@@ -515,6 +515,27 @@ static bool reads_remainder(const struct model *model)
 	return any;
 }
 
+/* A contact that rests changes highest derivatives by its force, which no equation has: they are rows of regions. */
+static void find_highest_of_regions(const struct model *model, struct switching *s)
+{
+	s->highest = ARRAY(int, model->n);
+	for (int k = 0; k < model->n; k++) {
+		const bool may_rest = has_bounces(model) && model->equations.highest[k];
+		s->highest[k] = may_rest ? s->transmitted_forces : -1;
+		if (may_rest)
+			*MORE(s->transmitted, s->transmitted_forces) = NULL;
+	}
+}
+
+static void build_highest_of_regions(struct building *b, struct switching *s)
+{
+	for (int k = 0; k < b->model->n; k++)
+		for (int r = 0; s->highest[k] >= 0 && r < s->regions; r++)
+			if (s->region[r].possible)
+				s->region[r].friction_force[s->highest[k]] =
+					row_of_highest(b, &s->system[s->region[r].system], k);
+}
+
 static void build_friction_forces(struct building *b, struct switching *s)
 {
 	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
@@ -524,9 +545,11 @@ static void build_friction_forces(struct building *b, struct switching *s)
 			feel(s, seen, model->output[i].left);
 	for (int c = 0; c < model->remainder.force_columns && reads_remainder(model); c++)
 		feel(s, seen, model->schedule.operator[0].left[c]);
+	const int frictions = s->transmitted_forces;
+	find_highest_of_regions(model, s);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].friction_force = ARRAY(struct output *, s->transmitted_forces);
-	for (int i = 0; i < s->transmitted_forces; i++) {
+	for (int i = 0; i < frictions; i++) {
 		bool slides = s->transmitted[i]->function == FN_SLIDE;
 		const int *index = slides ? NULL : transmitted_in_segments(b, s, s->transmitted[i]);
 		for (int r = 0; r < s->regions; r++) {
@@ -543,6 +566,7 @@ static void build_friction_forces(struct building *b, struct switching *s)
 				region->friction_force[i]->form = carried;
 		}
 	}
+	build_highest_of_regions(b, s);
 }
 
 void build_friction(struct building *b, struct switching *s)

@@ -49,8 +49,10 @@ struct switching {
 	struct slider *slider;
 	int impacts;                /* the model's */
 	struct impact *impact;
-	int transmitted_forces;     /* friction of which outputs read what it carries: as they have it, for all time */
+	/* Friction of which outputs read what it carries, as they have it, for all time; NULL: a highest derivative */
+	int transmitted_forces;
 	const struct atom **transmitted;
+	int *highest;               /* per coordinate: where among them its highest derivative is; -1: no contact rests */
 	int signs;                  /* where there are factors */
 	struct sign *sign;
 	int sharing;                /* parts that have these regions together, since rigid-body modes couple them */
