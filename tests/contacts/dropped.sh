@@ -61,7 +61,8 @@ for friction in '' ' + friction(a'"'"', 0.2)'; do
 		awk -F, 'NR > 1 { rests = $3 == 0.02 && $5 == 0; resting += rests
 				expected = rests ? 0 : 5 - 0.3*($5 - $4) - 12*($3 - $2)
 				off = $6 - expected; off = off < 0 ? -off : off; worst = off > worst ? off : worst
-				off = $7 - (2*expected - $2); off = off < 0 ? -off : off; worst = off > worst ? off : worst }
+				off = $7 - (2*expected - $2); off = off < 0 ? -off : off
+				worst = off > worst ? off : worst }
 			END { printf "# off by %g, at most 1e-12; %d rows rest, at least 50\n", worst, resting
 				exit !(worst <= 1e-12 && resting >= 50 && NR == 202) }' rows.csv >>log
 	result $? "the acceleration of what rests$friction"

@@ -52,7 +52,7 @@ struct switching {
 	/* Friction of which outputs read what it carries, as they have it, for all time; NULL: a highest derivative */
 	int transmitted_forces;
 	const struct atom **transmitted;
-	int *highest;               /* per coordinate: where among them its highest derivative is; -1: no contact rests */
+	int *highest;               /* per coordinate: which of them is its highest derivative; -1: none */
 	int signs;                  /* where there are factors */
 	struct sign *sign;
 	int sharing;                /* parts that have these regions together, since rigid-body modes couple them */
