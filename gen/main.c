@@ -83,11 +83,15 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	return spec;
 }
 
-/* The spec with the statement of --tunable behind it */
+/* The spec with the statement of --tunable behind it, since other values of params are found by reading it again;
+ * NULL: it was said what is wrong with the list, or the spec */
 static const struct source *with_tunables(const struct work *w, const struct source *source)
 {
-	if (!source || !w->options.tunable)
+	if (!w->options.tunable)
 		return source;
+	struct spec *spec = parse_spec(source);
+	if (diagnostics_errors() || !parse_tunables(spec, source_argument(w->options.tunable)))
+		return NULL;
 	struct source *more = NEW(struct source);
 	*more = *source;
 	more->text = format("%s\ntunable %s\n", source->text, w->options.tunable);
@@ -203,8 +207,11 @@ static struct model *model_at_place(struct work *w, const struct source *source,
 static const struct source *source_of(struct work *w)
 {
 	struct request *request = &w->options.request;
-	const struct source *source = with_tunables(w, source_read(w->options.spec, (struct place){ 0 }));
+	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
 	if (!source || !define(w))
+		return NULL;
+	source = with_tunables(w, source);
+	if (!source)
 		return NULL;
 	request->linearise = place_of_views(&w->options);
 	if (!request->linearise)

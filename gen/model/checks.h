@@ -43,9 +43,6 @@ struct jacobian {
 void jacobian_forms(void *jacobian);                        /* C, K and what `at` has of the system */
 /* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
 void jacobian_evaluate(void *jacobian);
-void constant_of(struct collector *c, const struct form *form, mpq_ptr value); /* 0 where inputs are in it */
-void jacobian_of_rows(struct jacobian *j, const struct form *const *row);     /* of other residuals */
-void jacobian_at(struct jacobian *j, struct point *point);
 int  jacobian_point(const struct jacobian *j, struct fixing *fixing); /* states + 1, which it fixes */
 /* The left side minus the right side of an equation, not solved for its highest derivatives */
 const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);

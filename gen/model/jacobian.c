@@ -8,7 +8,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-void jacobian_of_rows(struct jacobian *j, const struct form *const *row)
+/* Of other residuals than those of the equations */
+static void jacobian_of_rows(struct jacobian *j, const struct form *const *row)
 {
 	struct collector *c = &j->b->collector;
 	const struct model *model = j->b->model;
@@ -47,14 +48,15 @@ int jacobian_point(const struct jacobian *j, struct fixing *fixing)
 	return model->system.states + 1;
 }
 
-void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
+/* 0 where inputs are in it */
+static void constant_of(struct collector *c, const struct form *form, mpq_ptr value)
 {
 	mpq_set_ui(value, 0, 1);
 	if (is_constant(form))                  /* what still depends on inputs is left out */
 		constant_value(c, form, value);
 }
 
-void jacobian_at(struct jacobian *j, struct point *point)
+static void jacobian_at(struct jacobian *j, struct point *point)
 {
 	const struct model *model = j->b->model;
 	struct collector *c = &j->b->collector;

@@ -103,6 +103,8 @@ struct mode_list take_modes(struct parser *p);
 void read_modes(struct parser *p);
 void read_operator(struct parser *p);
 void read_tunable(struct parser *p);
+/* What an option has in the place of a statement, by the reader of that, from behind the statement's word on */
+bool parse_list(struct spec *spec, const struct source *source, void (*read)(struct parser *p));
 void read_sensitivity(struct parser *p);                    /* of sensitivity.c */
 void read_need(struct parser *p);
 void read_budget(struct parser *p);

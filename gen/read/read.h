@@ -351,6 +351,7 @@ struct spec *parse_spec(const struct source *source);
 struct node *parse_argument(struct spec *spec, const struct source *source, size_t from, size_t until);
 /* Behind the name of a scheme: its order, and NULL or what follows the word `over` */
 struct node *parse_scheme_order(struct spec *spec, const struct source *source, size_t from, struct node **over);
+bool parse_tunables(struct spec *spec, const struct source *source); /* of --tunable, behind the spec's */
 struct mode_list parse_mode_list(struct spec *spec, const struct source *source); /* likewise; at.source NULL: wrong */
 void add_symbol(struct spec *spec, struct symbol *symbol);  /* behind all others: of equal names the first is found */
 struct symbol *spec_find(const struct spec *spec, const char *name);

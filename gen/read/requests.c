@@ -212,6 +212,11 @@ void read_tunable(struct parser *p)
 	expect_end(p);
 }
 
+bool parse_tunables(struct spec *spec, const struct source *source)
+{
+	return parse_list(spec, source, read_tunable);
+}
+
 /* ---- how exact outputs have to be, and what a step may cost ---- */
 
 /* An output as it is named, primes and component included */

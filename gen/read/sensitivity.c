@@ -75,7 +75,8 @@ static void take_sensitivity(struct parser *p)
 		add_sensitivity(p->spec, s);
 }
 
-static void take_sensitivities(struct parser *p)
+/* sensitivity: sensitivity ( all | NAME { ' } ) { , ... } */
+void read_sensitivity(struct parser *p)
 {
 	do {
 		if (p->token.kind == TOKEN_NAME && !find_symbol(p, "all") && strcmp(p->token.name, "all") == 0)
@@ -86,26 +87,11 @@ static void take_sensitivities(struct parser *p)
 	expect_end(p);
 }
 
-/* sensitivity: sensitivity ( all | NAME { ' } ) { , ... } */
-void read_sensitivity(struct parser *p)
-{
-	take_sensitivities(p);
-}
-
-static void read_from_line(void *context)
-{
-	struct parser *p = context;
-	p->token = lex_next(&p->lexer);
-	p->end = p->token.at;
-	take_sensitivities(p);
-}
-
 bool parse_sensitivities(struct spec *spec, const struct source *source)
 {
-	struct parser p = { .spec = spec, .own = spec, .lexer = { source, 0, source->length, true, false } };
 	spec->sensitivities = 0;
 	spec->sensitivity = NULL;
-	return statement_guard(read_from_line, &p);
+	return parse_list(spec, source, read_sensitivity);
 }
 
 /* ---- what a derivative would have to jump at ---- */

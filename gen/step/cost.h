@@ -32,7 +32,6 @@ void count_peaks(struct step *step);                        /* after its program
 
 const char *unbounded_text(const struct step *step);         /* why there is no bound; NULL: there is one */
 const char *worst_target(int target);                        /* its name; NULL: there are no more */
-int  worst_target_named(const char *name);                   /* NONE: there is none */
 double worst_of_step(const struct step *step, int target, bool single);
 const char *worst_text(const struct step *step);             /* 4934 on cortex-m0, ... */
 void check_worst(const struct step *step);                   /* leaves the statement where a budget is not met */

@@ -53,7 +53,8 @@ struct sums {
 	bool *assigned;
 };
 
-const struct group *group_of_state(const struct step *step, int state, int *index, int *row)
+/* The group of blocks that has a state; `row`: where its states stand in its blocks */
+static const struct group *group_of_state(const struct step *step, int state, int *index, int *row)
 {
 	for (int k = 0; k < step->program->groups; k++) {
 		const struct group *g = &step->program->group[k];

@@ -42,8 +42,6 @@ tape_ref tape_of_row(struct tape *t, const struct step *step, const struct outpu
 int own_row(const struct step *step, const struct output *output); /* of tuning, where params change it; else -1 */
 int place_of_output(const struct model *model, const struct output *output); /* highest derivatives stand behind */
 bool differs_in_time(const mpq_t *factor, int segments);
-/* where its states stand in its blocks: `row` */
-const struct group *group_of_state(const struct step *step, int state, int *index, int *row);
 
 /* ---- written.c: the equations as written, for NAME_rhs ---- */
 

@@ -88,7 +88,7 @@ const char *worst_target(int target)
 	return target < (int)(sizeof bounds / sizeof *bounds) ? bounds[target].target : NULL;
 }
 
-int worst_target_named(const char *name)
+static int worst_target_named(const char *name)
 {
 	int target = 0;
 	while (worst_target(target) && strcmp(worst_target(target), name) != 0)

@@ -191,7 +191,7 @@ void emit_step_end(const struct emitter *e)
 	say(e, "%s", checks_of_step(e));
 }
 
-const char *step_parameters(const struct emitter *e)
+static const char *step_parameters(const struct emitter *e)
 {
 	return format("%s *s%s", e->name, given_inputs(e) ? format(", const double u[%s_INPUTS]", e->upper) : "");
 }

@@ -31,6 +31,5 @@ void store_loads(const struct emitter *e, const int *index, const char *member);
 bool *wanted_loads(const struct emitter *e, const int *index);
 void store_inputs(const struct emitter *e, const int *index);
 void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */
-const char *step_parameters(const struct emitter *e);
 
 #endif

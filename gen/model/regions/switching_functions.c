@@ -280,14 +280,6 @@ static bool is_as_before(const struct switching_function *e, int segment)
 	return mpq_equal(e->shift[segment], e->shift[segment - 1]) && same_form(e->in[segment], e->in[segment - 1]);
 }
 
-bool changes_in_time(const struct switching_function *e)
-{
-	bool changes = false;
-	for (int s = 1; s < e->segments; s++)
-		changes = changes || !is_as_before(e, s);
-	return changes;
-}
-
 const char *text_of_function(const struct model *model, int index)
 {
 	enum { SHOWN = 3 };

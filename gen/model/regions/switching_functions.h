@@ -31,7 +31,6 @@ struct compared {                   /* form + constant with 0 */
 };
 /* what breakpoints divide, in a segment of time */
 struct form *form_in(const struct switching_function *e, int segment);
-bool changes_in_time(const struct switching_function *e);
 const char *text_of_function(const struct model *model, int index);   /* x - t; from t = 2 on x - 1 */
 
 #endif

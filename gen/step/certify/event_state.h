@@ -25,7 +25,6 @@ int  trajectory_sign(const struct trajectory *t, const mpq_t *row, mpq_srcptr le
 bool trajectory_is_none(const struct trajectory *t, mpfi_srcptr value, double size);
 double trajectory_size(const struct trajectory *t, const mpq_t *row); /* what row . x may be summed from */
 mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output);
-void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh);
 bool trajectory_unknown(struct trajectory *t, const char *what); /* false */
 void trajectory_hold(struct trajectory *t);                  /* states that the region gives */
 /* The side to which a switching function on a breakpoint moves in a region, by its first derivative that is not 0;

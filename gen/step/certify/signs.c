@@ -50,7 +50,7 @@ mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output
 	return row;
 }
 
-void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh)
+static void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh)
 {
 	RATIONALS *row = trajectory_row_of(t, output);
 	trajectory_dot(t, row, t->x, fresh[state]);
