@@ -355,22 +355,3 @@ struct mode_list parse_mode_list(struct spec *spec, const struct source *source)
 	const struct mode_list none = { .count = 0 };
 	return statement_guard(read_listing, &listing) ? listing.list : none;
 }
-
-struct list_line {
-	struct parser parser;
-	void (*read)(struct parser *p);
-};
-
-static void read_list(void *context)
-{
-	struct list_line *line = context;
-	line->parser.token = lex_next(&line->parser.lexer);
-	line->parser.end = line->parser.token.at;
-	line->read(&line->parser);
-}
-
-bool parse_list(struct spec *spec, const struct source *source, void (*read)(struct parser *p))
-{
-	struct lexer lexer = { source, 0, source->length, true, false };
-	return statement_guard(read_list, &(struct list_line){ { .spec = spec, .own = spec, .lexer = lexer }, read });
-}
