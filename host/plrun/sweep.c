@@ -73,7 +73,7 @@ static void read_grid(const struct options *o, struct table *t)
 {
 	size_t length;
 	char *text = grid_text(o->range, o->ranges, &length);
-	table_begin(t, "--sweep", text, length);
+	table_begin(t, "<command line>", text, length);
 }
 
 static void read_table(struct sweep *s, const struct code *c)

@@ -97,23 +97,23 @@ $usage" swing.spec 1 --plot a.svg --paper --dark
 refuses 'a title with commands' 2 "plrun: error: --title: the title of the picture has a control character in it
 $usage" swing.spec 1 --plot a.svg --title "$(printf 'a\nb')"
 form="note: z,acc are two panels, z+zf two curves in one, x:x' is x' over x"
-refuses 'what is not there to be shown' 2 "--show:1:3: error: no output or state is named 'xx'
+refuses 'what is not there to be shown' 2 "<command line>:1:3: error: no output or state is named 'xx'
 x,xx
   ^
 note: did you mean 'x'?" swing.spec 1 --show x,xx
-refuses 'nothing like it' 2 "--show:1:1: error: no output or state is named 'speed'
+refuses 'nothing like it' 2 "<command line>:1:1: error: no output or state is named 'speed'
 speed
 ^
 note: there are x, x'" swing.spec 1 --show speed
-refuses 'a panel without a curve' 2 "--show:1:3: error: expected the name of an output or a state
+refuses 'a panel without a curve' 2 "<command line>:1:3: error: expected the name of an output or a state
 x+
   ^
 $form" swing.spec 1 --show x+
-refuses 'one over another over a third' 2 "--show:1:5: error: expected ',' or '+', found ':'
+refuses 'one over another over a third' 2 "<command line>:1:5: error: expected ',' or '+', found ':'
 x:x':x
     ^
 $form" swing.spec 1 --show "x:x':x"
-refuses 'too many curves' 2 "--show:1:16: error: a panel has at most 8 curves
+refuses 'too many curves' 2 "<command line>:1:16: error: a panel has at most 8 curves
 x+x+x+x+x+x+x+x+x
                ^
 note: a comma begins another panel" swing.spec 1 --show x+x+x+x+x+x+x+x+x
