@@ -30,6 +30,7 @@ here=$PWD/$charts
 derive precision.csv precision_raw.csv fold -v lists=setting,largest,ns_median \
 	-v by=model,method,family,setting_kind,unit_s,history_s
 derive precision.csv precision.csv thin
+derive precision.csv precision.csv digits -v to=3 -v only=largest,ns_median
 derive precision_methods.csv precision_raw.csv once -v columns_of=method,family,setting_kind,settings
 derive energy.csv energy_raw.csv fold -v by=case,method,family,real,step_s -v lists=steps,largest
 derive hard.csv hard_raw.csv once -v columns_of=case,method,family,setting_kind,setting,error,word
@@ -49,12 +50,10 @@ derive papers_beam_tip.csv papers_beam_tip.csv fold -v by=h_s,operator -v lists=
 derive quality.csv quality.csv fold -v by=method -v lists=h_over_T,period_elongation_percent,\
 amplitude_decay_percent_per_period,algorithmic_damping_ratio,elongation_size,decay_size
 derive stability_boundary.csv stability_boundary.csv fold -v by=method,branch -v lists=wh,zeta
-for name in energy integrators needs quality; do
-	derive $name.csv $name.csv digits -v to=4
-done
-for name in operator_boundary papers_beam_tip; do
+for name in energy integrators operator_boundary papers_beam_tip quality; do
 	derive $name.csv $name.csv digits -v to=3
 done
+derive needs.csv needs.csv digits -v to=4
 for name in hard_methods headline_integrators headline_equal_step; do
 	derive $name.csv "precision_methods.csv $name.csv" unlike
 done
