@@ -235,10 +235,10 @@ print_page() {
 	cat <<'END'
 # Published cases
 
-You want to see plgen reproduce values that others have published, with their digits. Each case was entered from its
-source before it was run: the equations as a spec, the values with their digits. The test `jury` makes C by each scheme,
-compiles and runs it, counts the digits reached and compares them with this page, which `tests/jury/jury.sh` prints;
-`plrun` gives the same rows. A name links to the file with its spec and values.
+You want to see plgen reproduce values that others have published. Each case was entered from its source before it was
+run; a name links to the file that says what the case is, with its spec and the values. The test `jury` makes C by each
+scheme, runs it, and compares the digits reached with this page, which `tests/jury/jury.sh` prints; `plrun` gives the
+same rows.
 
 - **published**: the fewest digits of a value of that case.
 - **exact, taylor, radau, auto**: `all` where every value has every published digit within half a unit of the last (of
@@ -264,10 +264,6 @@ END
 		words=$(key "$name" refused)
 		[ -z "$words" ] || printf '%s\n' "- $(link "$name"), $(key "$name" case), source\
  $(source_number "$name"): \`$words\`" | fold_item
-	done
-	printf '\n## The cases\n\n'
-	for name in $(cases); do
-		[ -n "$(key "$name" refused)" ] || echo "- $name: $(key "$name" case)" | fold_item
 	done
 	printf '\n## Sources\n\n'
 	awk '{ print NR ". " $0 }' sources | while IFS= read -r line; do
