@@ -47,7 +47,7 @@ static void ask(const struct choosing *c, struct model *model)
 	model->request.single = a->single;
 	model->request.compensated = a->compensated;
 	model->request.form = a->form;
-	model->request.form_at = (struct place){ source_argument(step_form_name(a->form)), 0 };
+	model->request.at.form = (struct place){ source_argument(step_form_name(a->form)), 0 };
 }
 
 static void ask_now(const struct choosing *c)
@@ -509,7 +509,7 @@ static void try_any_form(struct choosing *c, struct request *request)
 	}
 	if (made)
 		return;
-	stand_aside(c->stepped->request.form_at, format("--form %s", step_form_name(request->form)), why);
+	stand_aside(c->stepped->request.at.form, format("--form %s", step_form_name(request->form)), why);
 	request->form = FORM_AUTO;
 	try_all(c);
 }

@@ -24,18 +24,22 @@ struct options {
 	const char *target;             /* of a kernel that is printed: opencl, cuda or openmp */
 	const char *at;                 /* where a nonlinear model is linearised; NULL: not said */
 	bool equilibrium;               /* equilibria are listed, as text or JSON */
-	bool campbell;                  /* the picture of --plot, with: */
-	const char *sweep, *orders, *whirl; /* NULL: not given */
+	struct {                        /* the picture of --plot; what is not given is NULL */
+		bool wanted;
+		const char *sweep, *orders, *whirl;
+	} campbell;
 	struct picture_look look;       /* of pictures and of a page */
 	const char *amplitude;          /* of the excitation; NULL: not given */
 	const char *header;             /* beside the C file `output`; NULL: none is written */
 	enum print print;
 	const char *page;               /* the page that is written instead; NULL: none */
 	bool page_in_report;            /* as part of the page of --report */
-	const char *fmu;                /* the FMU that is written instead; NULL: none */
-	int fmu_version;                /* 2 or 3; 0: not said */
-	bool fmu_binary;                /* with the compiled one; */
-	const char *fmu_headers;        /* the folder of the standard's own headers; NULL: the runtime's count */
+	struct {                        /* the FMU that is written instead */
+		const char *path;       /* NULL: none */
+		int version;            /* 2 or 3; 0: not said */
+		bool binary;            /* with the compiled one; */
+		const char *headers;    /* the folder of the standard's own headers; NULL: the runtime's count */
+	} fmu;
 	bool rhs;
 	bool bundle;                    /* with the runtime inside */
 	bool strict;                    /* warnings are errors */

@@ -164,7 +164,7 @@ static struct request request_of_motion(const struct request *given)
 	struct request request = *given;
 	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
 	request.fast = request.phasors = false;
-	request.modes = request.linearise = NULL;
+	request.modes = request.linear.where = NULL;
 	request.rows = 0;
 	return request;
 }
@@ -213,16 +213,16 @@ static const struct source *source_of(struct work *w)
 	source = with_tunables(w, source);
 	if (!source)
 		return NULL;
-	request->linearise = place_of_views(&w->options);
-	if (!request->linearise)
+	request->linear.where = place_of_views(&w->options);
+	if (!request->linear.where)
 		return source;
 	struct request equations = *request;    /* no scheme, closed form or modes of the nonlinear ones */
-	request->linearise = equations.scheme = equations.tolerance = equations.modes = NULL;
+	request->linear.where = equations.scheme = equations.tolerance = equations.modes = NULL;
 	equations.solution = false;
 	struct model *model = model_at_place(w, source, &equations);
 	if (model && model->equations.motion_end) {
-		equations.linearise = place_on_motion(w, model, &equations.moved_by);
-		model = equations.linearise ? model_at_place(w, source, &equations) : NULL;
+		equations.linear.where = place_on_motion(w, model, &equations.linear.moved_by);
+		model = equations.linear.where ? model_at_place(w, source, &equations) : NULL;
 	}
 	if (!model)
 		return diagnostics_errors() ? NULL : source;
@@ -231,7 +231,7 @@ static const struct source *source_of(struct work *w)
 	if (!model->equations.linearised)
 		return source;
 	request->definitions.count = 0;
-	request->linearised_at = model->equations.point;
+	request->linear.found = model->equations.point;
 	w->given = w->spec;
 	return source_text(format("%s, linearised", source->name), model->equations.linearised);
 }
@@ -334,7 +334,7 @@ static void print_closed_form(FILE *to, const struct work *w)
 
 static const char *header_name(const struct work *w)
 {
-	return w->options.fmu ? fmu_header_name(w->model) : base_name(w->options.header);
+	return w->options.fmu.path ? fmu_header_name(w->model) : base_name(w->options.header);
 }
 
 /* What explains a model says what a step takes on a board. */
@@ -403,7 +403,7 @@ static bool print_text(struct work *w)
 	measure_board(w);
 	if (w->options.print == PRINT_C && !find_replayed(w->step))
 		return false;
-	w->text = w->options.fmu || w->options.page ? file_inside() : file_new(w->options.output);
+	w->text = w->options.fmu.path || w->options.page ? file_inside() : file_new(w->options.output);
 	bool printed = statement_guard(print_main_text, w);
 	file_close(w->text);
 	if (!printed)
@@ -413,9 +413,9 @@ static bool print_text(struct work *w)
 
 static void print_header(struct work *w)
 {
-	if (!w->options.header && !w->options.fmu)
+	if (!w->options.header && !w->options.fmu.path)
 		return;
-	w->header = w->options.fmu ? file_inside() : file_new(w->options.header);
+	w->header = w->options.fmu.path ? file_inside() : file_new(w->options.header);
 	emit_header(w->header->to, w->step, w->options.banner, w->options.rhs);
 	file_close(w->header);
 }
@@ -423,7 +423,7 @@ static void print_header(struct work *w)
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
 static void rewrite(struct work *w, struct file *f)
 {
-	if (w->options.bundle || w->options.fmu || w->options.target || algorithms_use(f->text, w->model->name))
+	if (w->options.bundle || w->options.fmu.path || w->options.target || algorithms_use(f->text, w->model->name))
 		file_rewrite(f, w->model->name, print_included);
 	if (w->options.request.own_math)
 		file_rewrite(f, w->model->name, print_own_functions);
@@ -439,8 +439,8 @@ static void rewrite_code(struct work *w)
 	rewrite(w, w->text);
 	if (w->header)
 		rewrite(w, w->header);
-	if (w->options.bundle || w->options.fmu)
-		bundle(w->text, w->header, w->options.fmu ? runtime_text("plfmu.h") : NULL,
+	if (w->options.bundle || w->options.fmu.path)
+		bundle(w->text, w->header, w->options.fmu.path ? runtime_text("plfmu.h") : NULL,
 		       w->options.request.single,
 		       w->options.request.compensated             ? "_compensated"
 		       : w->step->derivatives && w->step->derivatives->varied ? "_d"
@@ -456,13 +456,13 @@ static void rewrite_code(struct work *w)
 static bool print_fmu(const struct work *w)
 {
 	const struct options *options = &w->options;
-	if (!options->fmu)
+	if (!options->fmu.path)
 		return true;
-	struct fmu *fmu = fmu_new(w->step, options->fmu_version ? options->fmu_version : 3, w->text->text,
+	struct fmu *fmu = fmu_new(w->step, options->fmu.version ? options->fmu.version : 3, w->text->text,
 				  w->header->text);
-	bool made = fmu && (!options->fmu_binary || add_binary(fmu, options->fmu_headers));
+	bool made = fmu && (!options->fmu.binary || add_binary(fmu, options->fmu.headers));
 	if (made) {
-		struct file *f = file_new(options->fmu);
+		struct file *f = file_new(options->fmu.path);
 		archive_write(f->to, &fmu->archive);
 		file_close(f);
 	}
@@ -530,7 +530,7 @@ static void find_and_print_campbell(void *context)
 	const struct options *o = &w->options;
 	struct many many = { .first = w };
 	struct campbell c = { .build = model_with, .context = &many };
-	find_campbell(&c, o->sweep, o->orders, o->whirl);
+	find_campbell(&c, o->campbell.sweep, o->campbell.orders, o->campbell.whirl);
 	w->spec = many.now.given ? (struct spec *)many.now.given : many.now.spec;
 	print_campbell(w->text->to, &c, &o->look, picture_of_file(o->output));
 }
@@ -556,7 +556,7 @@ static void find_and_print_equilibria(void *context)
 	const struct source *source = source_read(w->options.spec, (struct place){ 0 });
 	if (!source || !define(&searched))
 		abandon();
-	request->linearise = EQUILIBRIA;
+	request->linear.where = EQUILIBRIA;
 	request->scheme = request->tolerance = request->modes = NULL;
 	w->model = model_at_place(&searched, source, request);
 	if (!w->model)
@@ -593,8 +593,8 @@ static bool compile(struct work *w)
 {
 	if (w->options.request.single && !w->options.request.solution)
 		target_float();
-	if (w->options.campbell || w->options.equilibrium)
-		return print_many(w, w->options.campbell ? find_and_print_campbell : find_and_print_equilibria);
+	if (w->options.campbell.wanted || w->options.equilibrium)
+		return print_many(w, w->options.campbell.wanted ? find_and_print_campbell : find_and_print_equilibria);
 	if (!make(w) || !find_rows(w) || !goes_with_delays(w) || !choose(w) || !derive(w) ||
 	    (w->options.strict && diagnostics_harden()) || !print_text(w))
 		return false;

@@ -51,8 +51,8 @@ static void take_solution(struct options *options, const char *value)
 
 static void take_plot(struct options *options, const char *value)
 {
-	options->campbell = strcmp(value, "campbell") == 0;
-	const char *wrong = options->campbell ? NULL : wrong_picture(value);
+	options->campbell.wanted = strcmp(value, "campbell") == 0;
+	const char *wrong = options->campbell.wanted ? NULL : wrong_picture(value);
 	if (wrong)
 		wrong_usage(format("--plot takes %s, found '%s'", PICTURE_KINDS, wrong));
 	set_print(options, PRINT_PLOT);
@@ -139,7 +139,7 @@ static void take_reduce(struct options *options, const char *value)
 
 static void take_fmu_version(struct options *options, const char *value)
 {
-	options->fmu_version = is_second("--fmu-version", value, "2", "3") ? 3 : 2;
+	options->fmu.version = is_second("--fmu-version", value, "2", "3") ? 3 : 2;
 }
 
 static void take_external(struct options *options, const char *value)
@@ -162,8 +162,8 @@ static void take_target(struct options *options, const char *value)
 
 static void take_fmu_binary(struct options *options, const char *value)
 {
-	options->fmu_binary = true;
-	options->fmu_headers = value;
+	options->fmu.binary = true;
+	options->fmu.headers = value;
 }
 
 /* Its model steps as plrun's does, but for the functions of libm, which WebAssembly has not. */
@@ -276,11 +276,11 @@ static const struct row {
 	{ "plot", "KIND,...", "draw response, poles, modes, frf by gnuplot; -o FILE.svg, .png or .pdf",
 	  .take = take_plot },
 	{ "sweep", "w=0:500[:N]", "of --plot campbell: poles over a param, 61 values; -o also FILE.csv, FILE.json",
-	  .text = AT(sweep) },
+	  .text = AT(campbell.sweep) },
 	{ "orders", "1,2,...", "of --plot campbell: multiples of the speed that are drawn (default: 1)",
-	  .text = AT(orders) },
+	  .text = AT(campbell.orders) },
 	{ "whirl", "x:y,...", "of --plot campbell: pairs of coordinates, forward from the first to the second",
-	  .text = AT(whirl) },
+	  .text = AT(campbell.whirl) },
 	{ "title", "TEXT", "of a picture, or of the page of --report", .text = AT(look.title) },
 	{ "size", "WxH", "of a picture: pixels, with --paper millimetres", .take = take_size },
 	{ "dark", NULL, "pictures and page light on dark", .flag = AT(look.dark) },
@@ -520,10 +520,10 @@ void read_options(int argc, char **argv, struct options *options)
 	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
 	take_page(options);
-	options->request.phasors = options->request.fast || options->request.batch || options->fmu;
-	if (options->request.external && (options->request.sensitivity || options->request.single || options->fmu))
+	options->request.phasors = options->request.fast || options->request.batch || options->fmu.path;
+	if (options->request.external && (options->request.sensitivity || options->request.single || options->fmu.path))
 		wrong_usage(format("--external casadi has derivatives by states and inputs, in doubles: without %s",
-				   options->request.sensitivity ? "--sensitivity" : options->fmu ? "--fmu"
+				   options->request.sensitivity ? "--sensitivity" : options->fmu.path ? "--fmu"
 								: "--real float"));
 	options->request.explained = options->print == PRINT_EXPLAIN || options->print == PRINT_JSON;
 	note_all(options);

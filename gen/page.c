@@ -15,7 +15,7 @@
 static void add_drawn_output(struct spec *spec, struct node *value)
 {
 	struct symbol *output = NEW(struct symbol);
-	*output = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = format("pl_drawn%d", ++spec->drawn),
+	*output = (struct symbol){ .kind = SYMBOL_OUTPUT, .name = format("pl_drawn%d", ++spec->page.outputs),
 				   .at = value->start, .index = spec->count.outputs++, .value = value };
 	add_symbol(spec, output);
 }
@@ -29,8 +29,8 @@ static bool is_stop(const struct when *w)
 void add_drawn_outputs(const struct options *options, struct spec *spec)
 {
 	struct node *node[MOST_DRAWN];
-	for (int i = 0; i < spec->drawings && options->page; i++) {
-		const int nodes = nodes_of_drawing(&spec->drawing[i], node);
+	for (int i = 0; i < spec->page.drawings && options->page; i++) {
+		const int nodes = nodes_of_drawing(&spec->page.drawing[i], node);
 		for (int k = 0; k < nodes; k++)
 			add_drawn_output(spec, node[k]);
 	}
@@ -168,8 +168,8 @@ static int drawn(const struct node *node, int *next)
 static void put_drawings(FILE *to, const struct spec *spec, int next)
 {
 	fputs(",\n\"draw\":[", to);
-	for (int i = 0; i < spec->drawings; i++) {
-		const struct drawing *d = &spec->drawing[i];
+	for (int i = 0; i < spec->page.drawings; i++) {
+		const struct drawing *d = &spec->page.drawing[i];
 		fprintf(to, "%s{\"what\":\"%s\",\"at\":[", i ? "," : "", d->what);
 		for (int k = 0; k < d->points; k++) {
 			const int x = drawn(d->point[k][0], &next);
@@ -237,7 +237,7 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	const struct fmu_variables v = variables_of(step);
 	struct spec *spec = step->model->spec;
 	const struct delays *delays = step->model->delays;
-	const int shown = step->model->outputs - spec->drawn;
+	const int shown = step->model->outputs - spec->page.outputs;
 	fputs("{", to);
 	put_member(to, "name", delays ? delays->name : step->model->name);
 	fputs(",", to);
@@ -247,8 +247,9 @@ static bool put_json(FILE *to, const struct step *step, const char *title)
 	fputs(",", to);
 	put_member(to, "spec", spec->source->text);
 	fprintf(to, ",\"h\":%s,\"coords\":%d,\"hidden\":%d,\"constrained\":%s,\"linear\":%s,\"whole\":%s",
-		shortest(round_rational(delays ? delays->h : step->model->h)), step->shown->model->n, spec->drawn,
-		spec->count.multipliers > 0 ? "true" : "false", is_nonlinear(step) ? "false" : "true",
+		shortest(round_rational(delays ? delays->h : step->model->h)), step->shown->model->n,
+		spec->page.outputs, spec->count.multipliers > 0 ? "true" : "false",
+		is_nonlinear(step) ? "false" : "true",
 		delays ? "false" : "true");
 	put_variables(to, "states", &v, FMU_STATE, v.count);
 	put_variables(to, "outputs", &v, FMU_OUTPUT, shown);

@@ -310,7 +310,7 @@ void print_depfile(const struct options *options, const struct spec *spec, const
 	if (!options->depfile)
 		return;
 	struct file *f = file_new(options->depfile);
-	const char *made = options->fmu ? options->fmu : options->page ? options->page : options->output;
+	const char *made = options->fmu.path ? options->fmu.path : options->page ? options->page : options->output;
 	fprintf(f->to, "%s", made ? escaped(made) : format("%s_pl.c", model->name));
 	fprintf(f->to, "%s:", options->header ? format(" %s", escaped(options->header)) : "");
 	if (strcmp(options->spec, "-") != 0)

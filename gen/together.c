@@ -34,9 +34,9 @@ static void find_header(struct options *options)
 {
 	size_t length = options->output ? strlen(options->output) : 0;
 	const enum picture_format as = picture_of_file(options->output);
-	if (options->print == PRINT_PLOT && (as == PICTURE_NONE || (as > PICTURE_PDF && !options->campbell)))
+	if (options->print == PRINT_PLOT && (as == PICTURE_NONE || (as > PICTURE_PDF && !options->campbell.wanted)))
 		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf%s, found '%s'",
-				   options->campbell ? ", of campbell also FILE.csv and FILE.json" : "",
+				   options->campbell.wanted ? ", of campbell also FILE.csv and FILE.json" : "",
 				   options->output));
 	if (!options->output || options->print != PRINT_C)
 		return;
@@ -50,7 +50,7 @@ static void check_print(const struct options *options)
 	if (options->bundle && options->print != PRINT_C)
 		wrong_usage(format("--bundle is of C: it does not go with %s", option_of_print(options->print)));
 	if (options->amplitude && options->print != PRINT_RESPONSE &&
-	    !(options->print == PRINT_PLOT && !options->campbell && has_frf(options->value)))
+	    !(options->print == PRINT_PLOT && !options->campbell.wanted && has_frf(options->value)))
 		wrong_usage("--amplitude goes with --response and --plot frf");
 }
 
@@ -62,9 +62,9 @@ static void check_math(const struct options *options)
 
 static void check_a2l(const struct options *options)
 {
-	if (options->a2l && (options->print != PRINT_C || options->fmu))
+	if (options->a2l && (options->print != PRINT_C || options->fmu.path))
 		wrong_usage(format("--a2l goes with C: it does not go with %s",
-				   options->fmu ? "--fmu" : option_of_print(options->print)));
+				   options->fmu.path ? "--fmu" : option_of_print(options->print)));
 	if (options->a2l && !ends_in(options->a2l, ".a2l"))
 		wrong_usage(format("--a2l takes the name of a file, FILE.a2l, found '%s'", options->a2l));
 }
@@ -72,7 +72,7 @@ static void check_a2l(const struct options *options)
 static void check_equilibrium(const struct options *o)
 {
 	const enum print print = o->print;
-	const char *other = o->at ? "--at" : o->output ? "-o" : o->fmu ? "--fmu" : o->bundle ? "--bundle"
+	const char *other = o->at ? "--at" : o->output ? "-o" : o->fmu.path ? "--fmu" : o->bundle ? "--bundle"
 			    : print != PRINT_C && print != PRINT_JSON ? option_of_print(print) : NULL;
 	if (o->equilibrium && other)
 		wrong_usage(format("--equilibrium does not go with %s", other));
@@ -81,12 +81,14 @@ static void check_equilibrium(const struct options *o)
 static void check_campbell(const struct options *options)
 {
 	const struct { const char *value, *option; } of[] = {
-		{ options->sweep, "--sweep" }, { options->orders, "--orders" }, { options->whirl, "--whirl" }
+		{ options->campbell.sweep, "--sweep" },
+		{ options->campbell.orders, "--orders" },
+		{ options->campbell.whirl, "--whirl" }
 	};
 	for (size_t i = 0; i < sizeof of / sizeof *of; i++)
-		if (of[i].value && !options->campbell)
+		if (of[i].value && !options->campbell.wanted)
 			wrong_usage(format("%s goes with --plot campbell", of[i].option));
-	if (options->campbell && !options->sweep)
+	if (options->campbell.wanted && !options->campbell.sweep)
 		wrong_usage("--plot campbell takes the param and its values from --sweep w=0:500");
 }
 
@@ -113,7 +115,7 @@ static void check_look(const struct options *options)
 		wrong_usage(format("%s is of a picture: --plot KIND draws it", any));
 	if (of_files && is_page(options))
 		wrong_usage(format("%s is of --plot: the page of --report is as wide as its window", of_files));
-	if (any && options->campbell && as > PICTURE_PDF)
+	if (any && options->campbell.wanted && as > PICTURE_PDF)
 		wrong_usage(format("%s is of a picture, and '%s' is a table", any, options->output));
 	if (look->dark && look->paper)
 		wrong_usage("--paper is light, and --dark is not");
@@ -126,19 +128,19 @@ static void check_look(const struct options *options)
 /* Of an FMU everything else that is printed, and what nothing in it would call */
 static void check_fmu(const struct options *options)
 {
-	const size_t length = options->fmu ? strlen(options->fmu) : 0;
+	const size_t length = options->fmu.path ? strlen(options->fmu.path) : 0;
 	const struct { bool requested; const char *option; } against[] = {
 		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
 		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
 		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
 	};
-	if (!options->fmu && (options->fmu_version || options->fmu_binary))
+	if (!options->fmu.path && (options->fmu.version || options->fmu.binary))
 		wrong_usage(format("%s goes with --fmu FILE.fmu",
-				   options->fmu_version ? "--fmu-version" : "--fmu-binary"));
-	if (!options->fmu)
+				   options->fmu.version ? "--fmu-version" : "--fmu-binary"));
+	if (!options->fmu.path)
 		return;
-	if (length < 5 || strcmp(options->fmu + length - 4, ".fmu") != 0)
-		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu));
+	if (length < 5 || strcmp(options->fmu.path + length - 4, ".fmu") != 0)
+		wrong_usage(format("--fmu takes the name of an FMU, FILE.fmu, found '%s'", options->fmu.path));
 	for (size_t i = 0; i < sizeof against / sizeof *against; i++)
 		if (against[i].requested)
 			wrong_usage(format("%s does not go with --fmu", against[i].option));
@@ -147,7 +149,7 @@ static void check_fmu(const struct options *options)
 static void check_live_page(const struct options *options)
 {
 	const struct { bool requested; const char *option; } against[] = {
-		{ options->output, "-o" }, { options->fmu, "--fmu" }, { options->a2l, "--a2l" },
+		{ options->output, "-o" }, { options->fmu.path, "--fmu" }, { options->a2l, "--a2l" },
 		{ options->print != PRINT_C, option_of_print(options->print) }, { options->rhs, "--rhs" },
 		{ options->request.selftest, "--selftest" }, { options->request.batch, "--batch" },
 		{ options->look.dark && !options->page_in_report, "--dark" },
@@ -178,7 +180,7 @@ static void check_spelling(const struct options *options, const char *const *pat
 
 static void check_names(const struct options *options)
 {
-	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu,
+	const char *path[] = { options->spec, options->output, options->header, options->depfile, options->fmu.path,
 			       options->a2l, options->params, options->page };
 	enum { PATHS = sizeof path / sizeof *path };
 	check_spelling(options, path, PATHS);

@@ -145,18 +145,19 @@ static void add_energies(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
 	RATIONAL one = RATIO(1, 1);
-	for (int i = 0; i < spec->energies; i++) {
-		const struct energy *e = &spec->energy[i];
+	for (int i = 0; i < spec->lagrange.energies; i++) {
+		const struct energy *e = &spec->lagrange.energy[i];
 		w->statement = e;
 		int group = new_group(w, e->kind == 'D' ? "the dissipation" : "the energies");
-		struct dimension first = dimension_in(NULL), of_first = dimension_of(w, spec->energy[0].value);
-		if (spec->energy[0].point || of_first.kind != GIVEN)
+		struct dimension first = dimension_in(NULL), of_first = dimension_of(w, spec->lagrange.energy[0].value);
+		if (spec->lagrange.energy[0].point || of_first.kind != GIVEN)
 			return;
 		add_dimension(w, &first, &of_first, one);
 		if (e->kind == 'D')
 			mpq_sub(first.base[SECOND], first.base[SECOND], one);
 		if (i > 0)
-			add_term(&w->group[group], NULL, format("%c", spec->energy[0].kind), spec->energy[0].at, first);
+			add_term(&w->group[group], NULL, format("%c", spec->lagrange.energy[0].kind),
+				 spec->lagrange.energy[0].at, first);
 		for (int k = 0; k < (e->point ? e->point->children : 0); k++) {
 			struct dimension F = dimension_of(w, e->value->child[k]);
 			struct dimension r = dimension_of(w, e->point->child[k]);
@@ -175,9 +176,9 @@ static void add_drawings(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
 	w->statement = NULL;
-	const int group = spec->drawings ? new_group(w, "what is drawn") : 0;
-	for (int i = 0; i < spec->drawings; i++) {
-		const struct drawing *d = &spec->drawing[i];
+	const int group = spec->page.drawings ? new_group(w, "what is drawn") : 0;
+	for (int i = 0; i < spec->page.drawings; i++) {
+		const struct drawing *d = &spec->page.drawing[i];
 		struct node *node[MOST_DRAWN];
 		const int count = nodes_of_drawing(d, node);
 		for (int k = 0; k < count; k++)
@@ -236,17 +237,17 @@ static void add_need(struct dimensions *w, const struct need *need)
 static void add_requested(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
-	for (int i = 0; i < spec->initials; i++) {
-		const struct initial *initial = &spec->initial[i];
+	for (int i = 0; i < spec->states.initials; i++) {
+		const struct initial *initial = &spec->states.initial[i];
 		int group = add_pair(w, initial, "the state",
 				     state_text(initial->coord, initial->component, initial->primes), initial->at,
 				     of_state(w, initial->coord, initial->component, initial->primes));
 		add_terms(w, group, initial->value);
 	}
-	add_bounds(w, spec->ranges, spec->range);
+	add_bounds(w, spec->states.ranges, spec->states.range);
 	add_bounds(w, spec->request.absolutes, spec->request.absolute_of);
-	for (int i = 0; i < spec->tunables; i++) {
-		const struct tunable *tunable = &spec->tunable[i];
+	for (int i = 0; i < spec->tuned.count; i++) {
+		const struct tunable *tunable = &spec->tuned.tunable[i];
 		if (!tunable->low)
 			continue;
 		int group = add_pair(w, tunable, "the param", tunable->symbol->name, tunable->at,
@@ -543,8 +544,8 @@ void adopt_units(struct spec *spec, const struct spec *given)
 			like = like->next;
 		s->unit = like ? like->unit : NULL;
 	}
-	spec->units = given->units;
-	spec->adopted = given->units;
+	spec->units.written = given->units.written;
+	spec->units.adopted = given->units.written;
 }
 
 void check_time(const struct node *node)

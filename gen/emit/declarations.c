@@ -133,7 +133,7 @@ void declare_selftest(const struct emitter *e)
 void declare_model(const struct emitter *e)
 {
 	announce(e, spell(e, "extern const pl_model $n_model;"), "");
-	if (e->model->spec->units)
+	if (e->model->spec->units.written)
 		announce(e, spell(e, "extern const pl_units $n_units;"), "");
 }
 

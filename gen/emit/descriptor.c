@@ -145,7 +145,7 @@ static void emit_units(const struct emitter *e, int inputs)
 {
 	const struct tuning *tunable = tunables_of(e->model);
 	const int states = e->system->states, outputs = e->model->outputs;
-	if (!e->model->spec->units)
+	if (!e->model->spec->units.written)
 		return;
 	say(e, "\n/* Units as text; \"\" where none is known. */\n");
 	emit_units_of(e, LISTED_STATE, "state_units", states);

@@ -70,14 +70,14 @@ static void number_loads(struct emitter *e)
 {
 	e->phase = ARRAY(int, (size_t)e->system->loads);
 	e->envelope = ARRAY(int, (size_t)e->system->loads);
-	e->phasor = ARRAY(int, (size_t)e->system->loads);
+	e->refresh.phasor = ARRAY(int, (size_t)e->system->loads);
 	for (int l = 0; l < e->system->loads; l++) {
 		const struct forcing *forcing = e->system->load[l].forcing;
 		bool needed = load_is_needed(e, l);
 		e->phase[l] = needed && oscillates(forcing) ? e->phases++ : -1;
 		e->envelope[l] = needed && mpq_sgn(forcing->a) != 0 ? e->envelopes++ : -1;
-		e->phasor[l] = is_refreshed(e->step, l) ? e->refreshed : -1;
-		e->refreshed += is_refreshed(e->step, l) ? e->system->load[l].columns : 0;
+		e->refresh.phasor[l] = is_refreshed(e->step, l) ? e->refresh.states : -1;
+		e->refresh.states += is_refreshed(e->step, l) ? e->system->load[l].columns : 0;
 	}
 }
 
@@ -86,11 +86,11 @@ static struct emitter emitter_new(FILE *to, const struct step *step, const char 
 	struct emitter e = {
 		.to = to, .step = step, .prints = printers_of(step), .model = step->model,
 		.system = system_of_outputs(step), .options = options, .name = step->model->name,
-		.upper = upper_case(step->model->name), .own = step->model->name, .place = "",
-		.degree = step->model->name
+		.upper = upper_case(step->model->name), .spelled.own = step->model->name, .spelled.place = "",
+		.spelled.degree = step->model->name
 	};
-	e.columns = format(step->taylor.expansion && step->taylor.expansion->columns ? "%s_STATES + %d" : "%s_STATES",
-			   e.upper, step->taylor.expansion ? step->taylor.expansion->columns : 0);
+	const int columns = step->taylor.expansion ? step->taylor.expansion->columns : 0;
+	e.spelled.columns = format(columns ? "%s_STATES + %d" : "%s_STATES", e.upper, columns);
 	number_loads(&e);
 	for (int i = 0; i < e.system->inputs; i++)
 		e.ramps = e.ramps || e.system->input[i].hold;
@@ -111,7 +111,7 @@ static bool forms_need_math(const struct emitter *e)
 {
 	const struct model *model = e->model;
 	bool math = (model->schedule.selector && reads_of(model, 1, &model->schedule.selector).math) ||
-		    reads_of(model, model->spec->derived, model->params.derived).math;
+		    reads_of(model, model->spec->tuned.derived, model->params.derived).math;
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		math = math || (left && reads_of(written_model(model), 1, &left).math);

@@ -23,7 +23,7 @@ static int samples_kept(const struct emitter *e)
 static struct emitter around(const struct emitter *e)
 {
 	struct emitter outer = *e;
-	outer.name = outer.own = outer.degree = delays_of(e)->name;
+	outer.name = outer.spelled.own = outer.spelled.degree = delays_of(e)->name;
 	outer.upper = format("%.*s", (int)(strlen(e->upper) - strlen("_CORE")), e->upper);
 	return outer;
 }

@@ -67,7 +67,7 @@ static bool *kept_states(const struct emitter *e, const struct formulas *f)
 
 static bool is_drawn(const struct emitter *e, int output)
 {
-	return output >= e->model->outputs - e->model->spec->drawn;
+	return output >= e->model->outputs - e->model->spec->page.outputs;
 }
 
 static bool is_wanted(const struct emitter *e, int output)
@@ -152,7 +152,7 @@ void emit_outputs_now(const struct emitter *e)
 	struct emitter drawn = *e;
 	drawn.drawn = true;
 	emit_some_outputs(e);
-	if (e->model->spec->drawn == 0)
+	if (e->model->spec->page.outputs == 0)
 		return;
 	say(e, "    {\n");
 	emit_some_outputs(&drawn);

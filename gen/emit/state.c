@@ -92,14 +92,14 @@ int most_samples_before(const struct emitter *e)
 
 const char *param_text(const struct emitter *e, int param)
 {
-	const int lead = param - e->model->spec->tunables;
+	const int lead = param - e->model->spec->tuned.count;
 	return lead >= 0 ? format("s->lead[%d].angle", lead) : format("s->coeffs.params[%d]", param);
 }
 
 const char *param_local(const struct emitter *e, int param)
 {
 	const struct symbol *symbol = held_symbol(e->model, param);
-	return param < e->model->spec->tunables ? c_name(e->c, symbol, 0) : symbol->name;
+	return param < e->model->spec->tuned.count ? c_name(e->c, symbol, 0) : symbol->name;
 }
 
 int given_inputs(const struct emitter *e)
@@ -309,7 +309,7 @@ bool has_param_ranges(const struct emitter *e)
 
 bool wraps_retune(const struct emitter *e)
 {
-	return has_param_ranges(e) || e->model->spec->derived > 0;
+	return has_param_ranges(e) || e->model->spec->tuned.derived > 0;
 }
 
 static const char *range_text(const struct param_range *range)

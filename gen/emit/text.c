@@ -7,23 +7,32 @@
 #include <stdlib.h>
 #include <string.h>
 
+static const char *name_of_letter(const struct emitter *e, char letter)
+{
+	switch (letter) {
+	case 'n': return e->name;
+	case 'N': return e->upper;
+	case 'o': return e->spelled.own;
+	case 'p': return e->spelled.place;
+	case 'd': return e->spelled.degree;
+	case 'c': return e->spelled.columns;
+	default: return "$";
+	}
+}
+
 /* `layout` with the names in it: names are C identifiers, without a % */
 static char *with_names(const struct emitter *e, const char *layout)
 {
-	size_t length = 1, longest = strlen(e->name) + strlen(e->upper) + strlen(e->own) + strlen(e->place) +
-			     strlen(e->degree) + strlen(e->columns);
+	size_t length = 1;
 	for (const char *c = layout; *c; c++)
-		length += *c == '$' ? longest : 1;
+		length += *c == '$' ? strlen(name_of_letter(e, c[1])) : 1;
 	char *text = ARRAY(char, length), *end = text;
 	for (const char *c = layout; *c; c++) {
 		if (*c != '$') {
 			*end++ = *c;
 			continue;
 		}
-		c++;
-		const char *what = *c == 'n' ? e->name : *c == 'N' ? e->upper : *c == 'o' ? e->own
-				 : *c == 'p' ? e->place : *c == 'd' ? e->degree : *c == 'c' ? e->columns : "$";
-		end = stpcpy(end, what);
+		end = stpcpy(end, name_of_letter(e, *++c));
 	}
 	return text;
 }
@@ -139,7 +148,7 @@ static void say_row(const struct emitter *e, int count, const double *value, con
 	size_t width = 0;
 	for (int i = 0; i < count; i++) {
 		if (!isfinite(value[i]))
-			error(e->model->request.step_at, NULL, "a number%s is beyond the range of %s",
+			error(e->model->request.at.step, NULL, "a number%s is beyond the range of %s",
 			      row ? format(" in the row of %s", row) : "", target_name());
 		const char *text = format("%s%s", shortest(value[i]), i + 1 < count ? ", " : "");
 		width += strlen(text);

@@ -23,18 +23,23 @@ struct emitter {
 	const char *name, *upper;   /* scs, SCS */
 	/* of independent parts of a piecewise-linear model the one that is printed; NULL: none */
 	const struct region_part *part;
-	const char *own, *place;    /* what its names begin with, scs_part1, its index, [1]; else the name, nothing */
-	const char *degree;         /* the first part's whose polynomials are of its degree */
-	const char *columns;        /* of a row of a series' coefficients: the states, and what breakpoints divide */
+	struct {                    /* of that part, as say() spells them */
+		const char *own;    /* what its names begin with, scs_part1; else the name */
+		const char *place;  /* its index, [1]; else nothing */
+		const char *degree; /* the first part's whose polynomials are of its degree */
+		const char *columns; /* of a row of a series' coefficients: the states, and what breakpoints divide */
+	} spelled;
 	const char *options;
 	struct identifiers *c;      /* of every symbol */
 	const char **local;         /* per state: the C local that holds it */
 	int phases, envelopes;        /* in the state */
 	int *phase, *envelope;        /* per load: index of its phase and of its envelope; -1: none */
 	bool ramps;                 /* some input is of first order */
-	int refreshed;              /* load states in the state, at the last refresh */
-	int *phasor;                /* per load: index of its first there; -1: none */
-	bool at_refresh;            /* load states are written where the refresh keeps them */
+	struct {                    /* of phasors */
+		int states;         /* load states in the state, at the last refresh */
+		int *phasor;        /* per load: index of its first there; -1: none */
+		bool keeps;         /* load states are written where the refresh keeps them */
+	} refresh;
 	const char **sample;        /* of a block of steps: per column of its inputs; NULL: of one step */
 	bool at_node;               /* load states are those at `node` of the step, not at its start; */
 	const char *after;          /* those this long after now [s]; NULL: not so */

@@ -93,7 +93,7 @@ struct fmu_variables variables_of(const struct step *step)
 			model->spec->count.params;
 	struct fmu_variables v = { 0, 0, ARRAY(struct fmu_variable, all) };
 	add(&v, FMU_TIME, "time", "time", 0);
-	v.variable[0].unit = model->spec->units ? unit_parse((struct place){ NULL, 1 }, "s", 1) : NULL;
+	v.variable[0].unit = model->spec->units.written ? unit_parse((struct place){ NULL, 1 }, "s", 1) : NULL;
 	for (int i = 0; i < outer_inputs(model); i++) {
 		add(&v, FMU_INPUT, system->input[i].name, format("input.%s", system->input[i].name), 0);
 		set_unit(&v.variable[v.count - 1],

@@ -117,7 +117,7 @@ void evaluate_absolutes(struct building *b)
 
 void evaluate_ranges(struct building *b)
 {
-	evaluate_bounds(b, b->spec->ranges, b->spec->range, take_range);
+	evaluate_bounds(b, b->spec->states.ranges, b->spec->states.range, take_range);
 }
 
 struct param_work {
@@ -147,10 +147,10 @@ static void evaluate_param_range(void *context)
 
 void evaluate_param_ranges(struct building *b)
 {
-	const int given = b->spec->tunables - b->spec->derived;
+	const int given = b->spec->tuned.count - b->spec->tuned.derived;
 	b->model->params.range = ARRAY(const struct param_range *, (size_t)given + 1);
 	for (int k = 0; k < given; k++)
-		if (b->spec->tunable[k].low)
-			statement_guard(evaluate_param_range,
-					&(struct param_work){ b, &b->spec->tunable[k], &b->model->params.range[k] });
+		if (b->spec->tuned.tunable[k].low)
+			statement_guard(evaluate_param_range, &(struct param_work){
+					b, &b->spec->tuned.tunable[k], &b->model->params.range[k] });
 }

@@ -407,7 +407,7 @@ static void report_moves(const struct start *w, const mpq_t *given, int missed, 
 				      mpq_get_d(given[i]), mpq_get_d(w->value[i]));
 	}
 	text = count > MOST ? format("%s, and %d more", text, count - MOST) : text;
-	const bool heard = warnings_are_heard() && !request->linearise && !request->solution &&
+	const bool heard = warnings_are_heard() && !request->linear.where && !request->solution &&
 			   !request->again.relative && !request->again.undivided;
 	const struct place at = statement_of(w, missed)->at;
 	if (!count || !heard)
@@ -421,8 +421,8 @@ static void report_moves(const struct start *w, const mpq_t *given, int missed, 
 static void name_given(struct start *w)
 {
 	const struct spec *spec = w->b->spec;
-	for (int i = 0; i < spec->initials; i++) {
-		const struct initial *initial = &spec->initial[i];
+	for (int i = 0; i < spec->states.initials; i++) {
+		const struct initial *initial = &spec->states.initial[i];
 		const struct symbol *coord = initial->coord;
 		const int first = coord->index + (initial->component ? initial->component - 1 : 0);
 		for (int k = 0; k < (initial->component || !coord->length ? 1 : coord->length); k++)

@@ -99,7 +99,8 @@ void collect_equations(struct building *b, struct segment_equations *segment_equ
 			statement_guard(collect_equation, &(struct indexed){ b, segment_equations, i, NULL });
 	segment_equations->written = segment_equations->residuals;
 	segment_equations->element = ARRAY(struct form *, b->spec->elements);
-	struct form **terms = b->spec->energies && *changes == known ? lagrange_terms(b, segment_equations) : NULL;
+	struct form **terms =
+		b->spec->lagrange.energies && *changes == known ? lagrange_terms(b, segment_equations) : NULL;
 	for (int i = 0; i < b->spec->elements && *changes == known; i++)
 		statement_guard(collect_element, &(struct indexed){ b, segment_equations, i, terms });
 	b->collector.equation = false;
@@ -339,7 +340,7 @@ static void report_singular(const struct building *b, int coord)
 	struct place at = highest ? highest->at : mass ? mass->at : model->frame.coord[coord]->at;
 	if (!highest && !mass && !has_kinetic_energy(b->spec, coord))
 		say_error(at,
-			  b->spec->energies ? "every coordinate needs a mass: it stands in no kinetic energy T"
+			  b->spec->lagrange.energies ? "every coordinate needs a mass: it stands in no kinetic energy T"
 					    : "every coordinate needs a mass, or a first derivative",
 			  "singular mass matrix: no derivative of %s stands in an equation", model->names.coord[coord]);
 	else if (zero_column(model, coord))

@@ -361,8 +361,8 @@ struct form **lagrange_terms(struct building *b, struct segment_equations *s)
 	const int keep = (int)b->collector.keep;
 	b->collector.keep = KEEP_ALL;
 	s->constraint = ARRAY(struct constraint, (size_t)b->spec->count.multipliers + 1);
-	for (int i = 0; i < b->spec->energies; i++)
-		statement_guard(add_guarded, &(struct adding){ b, s, force, &b->spec->energy[i] });
+	for (int i = 0; i < b->spec->lagrange.energies; i++)
+		statement_guard(add_guarded, &(struct adding){ b, s, force, &b->spec->lagrange.energy[i] });
 	b->collector.keep = (unsigned)keep;
 	for (int j = 0; j < b->model->n; j++)
 		force[j] = force[j] ? force[j] : NEW(struct form);

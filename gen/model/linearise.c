@@ -416,7 +416,7 @@ static const char *loads_text(struct linearising *l)
 static const char *point_text(struct linearising *l)
 {
 	const struct model *model = l->b->model;
-	const char *list = l->rest ? "rest: " : "", *moved = l->b->request->moved_by;
+	const char *list = l->rest ? "rest: " : "", *moved = l->b->request->linear.moved_by;
 	const int states = l->rest ? l->n : l->states;
 	if (l->timed)
 		list = format("t = %.6g%s", mpq_get_d(time_of(l)),
@@ -447,9 +447,9 @@ static void check_contacts(const struct building *b)
 	if (facts.contacts)
 		error(b->spec->name_at, "plrun runs any model, also with a record that sweeps",
 		      "friction, impacts and jumps have no linear equations");
-	for (int i = 0; i < b->spec->energies; i++)
-		if (b->spec->energy[i].kind == 'G')
-			error(b->spec->energy[i].at, "coordinates that fulfil it by themselves have some",
+	for (int i = 0; i < b->spec->lagrange.energies; i++)
+		if (b->spec->lagrange.energy[i].kind == 'G')
+			error(b->spec->lagrange.energy[i].at, "coordinates that fulfil it by themselves have some",
 			      "linear equations at a point are not built for constraints");
 }
 
@@ -475,7 +475,7 @@ static void with_written(struct linearising *l, void (*find)(struct linearising 
 static bool find_point(struct linearising *l)
 {
 	struct model *model = l->b->model;
-	const char *place = l->b->request->linearise;
+	const char *place = l->b->request->linear.where;
 	l->rest = strcmp(place, "rest") == 0 || strcmp(place, EQUILIBRIA) == 0;
 	for (int i = 0; i < l->states; i++)
 		mpq_set(l->state[i], model->initial[i]);
@@ -550,7 +550,7 @@ void linearise(void *building)
 	if (!find_point(&l))
 		return;
 	spell_places(&l);
-	if (strcmp(b->request->linearise, EQUILIBRIA) == 0)
+	if (strcmp(b->request->linear.where, EQUILIBRIA) == 0)
 		return;
 	find_highest(&l);
 	check_kinks(&l);

@@ -258,7 +258,7 @@ static void check_step(const struct lint *lint)
 			what = "of a load";
 		}
 	if (fastest * h > PI)
-		say_warning(model->request.step_at, format("a step below %.3g s", PI / fastest),
+		say_warning(model->request.at.step, format("a step below %.3g s", PI / fastest),
 			    "the step is more than half the shortest period %s, %.3g s: its samples show a slower "
 			    "motion",
 			    what, 2 * PI / fastest);

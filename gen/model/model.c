@@ -48,8 +48,8 @@ static void set_values(struct building *b)
 		set_value(spec_find(b->spec, again->varied), b->spec->name_at, again->value);
 	if (again->tunable)
 		derive_params(b->spec);
-	for (int i = 0; again->tunable && i < b->spec->tunables; i++)
-		set_value(b->spec->tunable[i].symbol, b->spec->tunable[i].at, again->tunable[i]);
+	for (int i = 0; again->tunable && i < b->spec->tuned.count; i++)
+		set_value(b->spec->tuned.tunable[i].symbol, b->spec->tuned.tunable[i].at, again->tunable[i]);
 }
 
 /* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
@@ -121,10 +121,10 @@ static void choose_scheme(void *context)
 	enum scheme scheme;
 	if (scheme_of(wanted, &scheme)) {
 		b->model->scheme = b->request->solution ? SCHEME_EXACT : scheme;
-		b->model->request.scheme_at = at;
-		b->model->request.scheme_order =
+		b->model->request.at.scheme = at;
+		b->model->request.series.order =
 			blank ? parse_scheme_order(b->spec, at.source, (size_t)(blank - requested), &over) : order;
-		b->model->request.scheme_over = over;
+		b->model->request.series.over = over;
 		b->collector.scheme = scheme_name(b->model->scheme);
 		b->collector.keep = b->model->scheme == SCHEME_EXACT ? KEEP_PIECEWISE : KEEP_ALL;
 		return;
@@ -140,7 +140,7 @@ static void evaluate_step(void *context)
 	struct building *b = context;
 	struct place at = b->spec->request.step_at;
 	struct node *node = requested_or_written(b, b->request->step, b->spec->request.step, &at);
-	b->model->request.step_at = b->model->request.end_at = at;
+	b->model->request.at.step = b->model->request.at.end = at;
 	if (b->request->step)
 		check_time(node);
 	collect_constant(&b->collector, node, b->model->h);
@@ -160,7 +160,7 @@ struct initial_work {
 static void evaluate_initial(void *context)
 {
 	struct initial_work *work = context;
-	const struct initial *initial = &work->b->spec->initial[work->index];
+	const struct initial *initial = &work->b->spec->states.initial[work->index];
 	const struct symbol *coord = initial->coord;
 	struct model *model = work->b->model;
 	int first = coord->index + (initial->component ? initial->component - 1 : 0),
@@ -185,8 +185,8 @@ static void evaluate_initial(void *context)
 static void evaluate_initials(struct building *b)
 {
 	size_t failed = SIZE_MAX;
-	for (int i = 0; i < b->spec->initials; i++) {
-		size_t statement = b->spec->initial[i].statement;
+	for (int i = 0; i < b->spec->states.initials; i++) {
+		size_t statement = b->spec->states.initial[i].statement;
 		if (statement != failed && !statement_guard(evaluate_initial, &(struct initial_work){ b, i }))
 			failed = statement;
 	}
@@ -363,10 +363,10 @@ static void part_factors(struct building *b)
 	const struct request *request = b->request;
 	const bool *factor = request->again.factor         ? request->again.factor
 			     : request->find_factors ? request->find_factors(b)
-						     : ARRAY(bool, b->spec->tunables);
-	for (int i = 0, acting = 0; i < b->spec->tunables; i++) {
-		b->spec->tunable[i].symbol->tuning.factor = factor[i];
-		b->spec->tunable[i].symbol->tuning.acting = factor[i] ? acting : acting++;
+						     : ARRAY(bool, b->spec->tuned.count);
+	for (int i = 0, acting = 0; i < b->spec->tuned.count; i++) {
+		b->spec->tuned.tunable[i].symbol->tuning.factor = factor[i];
+		b->spec->tuned.tunable[i].symbol->tuning.acting = factor[i] ? acting : acting++;
 		if (factor[i])
 			b->factor = b->model->params.factor = factor;
 	}
@@ -382,7 +382,8 @@ static void collect_derived(void *context)
 {
 	const struct derivation *d = context;
 	struct collector own = d->b->collector;
-	struct symbol *symbol = d->b->spec->tunable[d->b->spec->tunables - d->b->spec->derived + d->derived].symbol;
+	const int given = d->b->spec->tuned.count - d->b->spec->tuned.derived;
+	struct symbol *symbol = d->b->spec->tuned.tunable[given + d->derived].symbol;
 	evaluate_symbol(&(struct symbol_work){ d->b, symbol });
 	forget_lets(d->b->spec);
 	own.params = PARAMS_ATOMS;
@@ -395,9 +396,9 @@ static void collect_derived(void *context)
 static void derive_model(struct building *b)
 {
 	derive_params(b->spec);
-	b->model->params.leads.params = b->spec->tunables;
-	b->model->params.derived = ARRAY(const struct form *, (size_t)b->spec->derived + 1);
-	for (int k = 0; k < b->spec->derived && !b->request->again.tunable; k++)
+	b->model->params.leads.params = b->spec->tuned.count;
+	b->model->params.derived = ARRAY(const struct form *, (size_t)b->spec->tuned.derived + 1);
+	for (int k = 0; k < b->spec->tuned.derived && !b->request->again.tunable; k++)
 		statement_guard(collect_derived, &(struct derivation){ b, k });
 }
 
@@ -440,10 +441,10 @@ static void begin_model(struct building *b)
 		b->collector.irrationals = model->written->equations.irrationals;
 	b->collector.frame = &model->frame;
 	model->equations.atoms = b->collector.atoms = atoms_new();
-	model->params.leads.params = b->spec->tunables;
+	model->params.leads.params = b->spec->tuned.count;
 	b->collector.leads = &model->params.leads;
-	model->request.form_at = (struct place){ source_argument(step_form_name(request->form)), 0 };
-	model->request.compensated_at = (struct place){ source_argument("compensated"), 0 };
+	model->request.at.form = (struct place){ source_argument(step_form_name(request->form)), 0 };
+	model->request.at.compensated = (struct place){ source_argument("compensated"), 0 };
 	model->name = request->prefix ? request->prefix : b->spec->name;
 	mpq_init(model->h);
 	for (struct symbol *s = b->spec->first; s; s = s->next)
@@ -467,7 +468,7 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
-	if (b->spec->tunables > 0 && (all || request->again.factor) && !diagnostics_errors())
+	if (b->spec->tuned.count > 0 && (all || request->again.factor) && !diagnostics_errors())
 		collect_with_params(b);
 	gather_impacts(b);
 	if (all)
@@ -522,9 +523,9 @@ static void build_parts(struct building *b)
 
 static void forget_tunables(struct spec *spec)
 {
-	for (int k = 0; k < spec->tunables; k++)
-		spec->tunable[k].symbol->tuning = (struct symbol_tuning){ 0 };
-	spec->tunables = 0;
+	for (int k = 0; k < spec->tuned.count; k++)
+		spec->tuned.tunable[k].symbol->tuning = (struct symbol_tuning){ 0 };
+	spec->tuned.count = 0;
 }
 
 /* Which are asked for, and the equations of those that this model has */
@@ -541,7 +542,7 @@ struct model *model_build(struct spec *spec, const struct request *request)
 {
 	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
 	struct model *model = b.model;
-	if (request->linearise)                 /* params are those of the spec */
+	if (request->linear.where)                 /* params are those of the spec */
 		forget_tunables(spec);
 	begin_model(&b);
 	for (int i = 0; i < request->definitions.count; i++)
@@ -553,20 +554,21 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	name_coordinates(&b);
 	name_states(&b);
 	give_states_in_units(&b);
-	if (spec->units && !spec->adopted && !request->again.tunable && !request->again.relative)
+	if (spec->units.written && !spec->units.adopted && !request->again.tunable && !request->again.relative)
 		check_dimensions(spec);
 	collect_model(&b);
 	build_parts(&b);
 	model->equations.irrationals = b.collector.irrationals;
-	if (!diagnostics_errors() && request->linearise) {
+	if (!diagnostics_errors() && request->linear.where) {
 		silent_guard(find_nonlinear, &b);
-		if (model->nonlinear.terms > 0 || strcmp(request->linearise, EQUILIBRIA) == 0)
+		if (model->nonlinear.terms > 0 || strcmp(request->linear.where, EQUILIBRIA) == 0)
 			statement_guard(linearise, &b);
 	}
-	if (!diagnostics_errors() && request->explained && spec->energies)
+	if (!diagnostics_errors() && request->explained && spec->lagrange.energies)
 		silent_guard(find_symmetries, &b);
-	bool reported = request->linearise || request->solution || request->again.tunable || request->again.relative ||
-		    request->again.undivided || request->again.derivatives > 0 || request->again.varied;
+	bool reported = request->linear.where || request->solution || request->again.tunable ||
+			request->again.relative || request->again.undivided || request->again.derivatives > 0 ||
+			request->again.varied;
 	if (!diagnostics_errors() && (!reported || request->again.derivatives > 0))
 		judge_smoothness(&b);
 	if (!diagnostics_errors() && !reported && warnings_are_heard())
@@ -596,5 +598,5 @@ void argument_value(struct model *model, const char *text, mpq_ptr value)
 	collect_constant(&collector, node, value);
 	if (mpq_sgn(value) < 0)
 		error(at, NULL, "--solution takes a time that is not below 0");
-	model->request.end_at = at;
+	model->request.at.end = at;
 }

@@ -40,7 +40,7 @@ struct model_params {               /* tunable ones: gen/model/tunable */
 	struct leads leads;         /* what the instance has behind them */
 	const struct tuning *held;  /* those that the instance has in such a way: no more than a list */
 	const struct param_range **range; /* per given one; NULL: it may have any value */
-	const struct form **derived; /* spec->derived: over the params that are given */
+	const struct form **derived; /* spec->tuned.derived: over the params that are given */
 	const bool *factor;         /* per param: regions have it as a number, in their matrices; NULL: none */
 	const struct tuning *retuned; /* held, and how these follow from it; NULL: no param is such */
 };

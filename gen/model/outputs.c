@@ -417,8 +417,8 @@ static void check_drawings(struct building *b)
 {
 	const struct spec *spec = b->spec;
 	struct node *node[MOST_DRAWN];
-	for (int i = 0; i < spec->drawings; i++) {
-		const int count = nodes_of_drawing(&spec->drawing[i], node);
+	for (int i = 0; i < spec->page.drawings; i++) {
+		const int count = nodes_of_drawing(&spec->page.drawing[i], node);
 		for (int k = 0; k < count && !diagnostics_errors(); k++)
 			statement_guard(check_drawn, &(struct output_work){ b, node[k], NULL });
 	}

@@ -10,13 +10,13 @@ static bool calls_libm(const struct atom *a)
 
 int held_values(const struct model *model)
 {
-	return model->spec->tunables + model->params.leads.count;
+	return model->spec->tuned.count + model->params.leads.count;
 }
 
 const struct symbol *held_symbol(const struct model *model, int held)
 {
-	const int lead = held - model->spec->tunables;
-	return lead < 0 ? model->spec->tunable[held].symbol : model->params.leads.lead[lead].symbol;
+	const int lead = held - model->spec->tuned.count;
+	return lead < 0 ? model->spec->tuned.tunable[held].symbol : model->params.leads.lead[lead].symbol;
 }
 
 static void look_at_form(struct reads *reading, const struct model *model, bool *seen, const struct form *form)

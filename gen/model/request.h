@@ -49,19 +49,22 @@ struct request {                    /* what the user asks for on the command lin
 	bool batch;                 /* NAME_batch */
 	enum step_form form;
 	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: see `phasors` */
-	/* where: rest, t=EXPR, or states and their values; EQUILIBRIA: they are searched for; NULL: nowhere */
-	const char *linearise;
-	const char *moved_by;       /* the scheme that brought the states there; NULL: they were given */
-	const char *linearised_at;  /* the point that these linear equations are at; NULL: they are the model's own */
+	struct {                    /* a point at which the equations are made linear */
+		/* rest, t=EXPR, or states and their values; EQUILIBRIA: they are searched for; NULL: nowhere */
+		const char *where;
+		const char *moved_by; /* the scheme that brought the states there; NULL: they were given */
+		const char *found;  /* the point that these equations are at; NULL: they are the model's own */
+	} linear;
 	bool explained;             /* what holds of the equations is wanted too */
 	bool solution;              /* the closed form is wanted, whatever the scheme */
 	const char *passed_over;    /* why the scheme that would be best has no step; NULL: it was not tried yet */
 	struct definitions definitions;
-	/* Where it is asked for, command line or spec: found when the model is built */
-	struct place scheme_at;     /* source NULL: it is not */
-	struct node *scheme_order, *scheme_over; /* of a series; NULL: not given */
-	struct place step_at, form_at, compensated_at;
-	struct place end_at;        /* the end of --solution, else as step_at */
+	struct {                    /* where it is asked for, command line or spec: found when the model is built */
+		struct place scheme; /* source NULL: it is not */
+		struct place step, form, compensated;
+		struct place end;   /* of --solution, else as step */
+	} at;
+	struct { struct node *order, *over; } series; /* as its scheme has them; NULL: not given */
 	struct again again;
 };
 

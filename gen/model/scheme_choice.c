@@ -106,7 +106,7 @@ bool leaves_over(const struct building *b)
 	const struct demands demands = demands_of(b);
 	if (b->request->solution)
 		return false;
-	if (!b->model->request.scheme_at.source)
+	if (!b->model->request.at.scheme.source)
 		return !demands.piecewise;
 	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
 	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->operators.given);
@@ -230,7 +230,7 @@ static void report_atom(void *context)
 {
 	const struct building *b = context;
 	const struct atom *atom = first_atom(b, false);
-	const char *rewrite = rewrite_of(atom->node, b->spec->energies == 0);
+	const char *rewrite = rewrite_of(atom->node, b->spec->lagrange.energies == 0);
 	error(atom->node->start, format("%s%s%s and %s are the schemes that could", rewrite, *rewrite ? "; " : "",
 					leaving_schemes(", "), holding_schemes()),
 	      "'%s' is not piecewise linear: scheme exact cannot treat it",
@@ -258,7 +258,7 @@ static void find_obstacle(void *context)
 	}
 	if (!model->nonlinear.obstacle)
 		return;
-	rewrite = rewrite_of(model->nonlinear.obstacle, b->spec->energies == 0);
+	rewrite = rewrite_of(model->nonlinear.obstacle, b->spec->lagrange.energies == 0);
 	model->nonlinear.why = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
 }
 
@@ -279,7 +279,7 @@ static enum scheme scheme_of_choice(const struct building *b)
 static bool goes_by_series(const struct building *b)
 {
 	const struct model *model = b->model;
-	bool chosen = !model->request.scheme_at.source && !is_piecewise_linear(b);
+	bool chosen = !model->request.at.scheme.source && !is_piecewise_linear(b);
 	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
 	       !b->request->loads_left;
 }
@@ -316,7 +316,7 @@ static void keep_loads(struct building *b, const char *why)
 {
 	if (!b->request->loads_left)
 		return;
-	stand_aside(b->model->request.scheme_at.source ? b->model->request.scheme_at : b->spec->name_at,
+	stand_aside(b->model->request.at.scheme.source ? b->model->request.at.scheme : b->spec->name_at,
 		    "--loads remainder", why);
 	struct request *request = NEW(struct request);
 	*request = *b->request;
@@ -336,7 +336,7 @@ static bool choose_scheme(struct building *b)
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(report_friction_stands, b);
-	if ((!linear || constrained) && !model->request.scheme_at.source && !b->request->solution && !exact) {
+	if ((!linear || constrained) && !model->request.at.scheme.source && !b->request->solution && !exact) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
 		silent_guard(find_obstacle, b);

@@ -158,7 +158,7 @@ static const char *add_term(struct spelling *s, const char *text, const struct f
 static bool is_lead(const struct model *model, const struct basis *basis)
 {
 	return basis->atom && basis->atom->kind == ATOM_PARAM &&
-	       basis->atom->param->tuning.number > model->spec->tunables;
+	       basis->atom->param->tuning.number > model->spec->tuned.count;
 }
 
 static const char *spell_form(struct spelling *s, const struct form *form)

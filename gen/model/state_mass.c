@@ -362,9 +362,9 @@ static int negative_pivot(int n, int width, mpq_t *M)
 int negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic)
 {
 	*kinetic = NULL;
-	for (int i = b->spec->energies - 1; i >= 0; i--)
-		if (b->spec->energy[i].kind == 'T')
-			*kinetic = &b->spec->energy[i];
+	for (int i = b->spec->lagrange.energies - 1; i >= 0; i--)
+		if (b->spec->lagrange.energy[i].kind == 'T')
+			*kinetic = &b->spec->lagrange.energy[i];
 	return *kinetic && b->spec->equations == 0 ? negative_pivot(n, width, M) : -1;
 }
 

@@ -113,14 +113,14 @@ static void name_inputs(struct building *b)
 	struct linear *system = &b->model->system;
 	const bool acting = b->collector.params == PARAMS_INPUTS;
 	system->inputs = b->spec->count.inputs;
-	for (int k = 0; k < b->spec->tunables && acting; k++)
-		system->inputs += !b->spec->tunable[k].symbol->tuning.factor;
+	for (int k = 0; k < b->spec->tuned.count && acting; k++)
+		system->inputs += !b->spec->tuned.tunable[k].symbol->tuning.factor;
 	system->input = ARRAY(struct input, system->inputs);
 	for (const struct symbol *s = b->spec->first; s; s = s->next)
 		if (s->kind == SYMBOL_INPUT)
 			system->input[s->index] = (struct input){ .name = s->name, .hold = s->hold, .unit = s->unit };
 	for (int i = b->spec->count.inputs; i < system->inputs; i++)
-		system->input[i].name = b->spec->tunable[param_of_input(b->spec, i)].symbol->name;
+		system->input[i].name = b->spec->tuned.tunable[param_of_input(b->spec, i)].symbol->name;
 	make_input_forces(system);
 }
 

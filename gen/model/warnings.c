@@ -25,7 +25,7 @@ static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
 static struct place scheme_place(const struct building *b)
 {
-	return b->model->request.scheme_at.source ? b->model->request.scheme_at : b->spec->name_at;
+	return b->model->request.at.scheme.source ? b->model->request.at.scheme : b->spec->name_at;
 }
 
 static void check_predictor(struct jacobian *j)

@@ -9,7 +9,7 @@
 static void read_functions(struct parser *p, const char *names)
 {
 	struct spec *spec = p->spec;
-	const int first = spec->energies;
+	const int first = spec->lagrange.energies;
 	do {
 		struct energy energy = { .part = p->part, .at = { p->lexer.source, p->statement } };
 		struct token name = p->token;
@@ -20,11 +20,11 @@ static void read_functions(struct parser *p, const char *names)
 		expect_op(p, "=", "'='");
 		energy.kind = name.name[0];
 		energy.value = read_quantity(p);
-		*MORE(spec->energy, spec->energies) = energy;
+		*MORE(spec->lagrange.energy, spec->lagrange.energies) = energy;
 	} while (take_op(p, ","));
 	expect_end(p);
-	for (int i = first; i < spec->energies; i++)
-		spec->energy[i].end = p->end;
+	for (int i = first; i < spec->lagrange.energies; i++)
+		spec->lagrange.energy[i].end = p->end;
 }
 
 void read_energy(struct parser *p) { read_functions(p, "TV"); }
@@ -48,7 +48,7 @@ void read_point_force(struct parser *p, struct node *first)
 		      force.value->children == 1 ? "" : "s", force.point->children);
 	expect_end(p);
 	force.end = p->end;
-	*MORE(p->spec->energy, p->spec->energies) = force;
+	*MORE(p->spec->lagrange.energy, p->spec->lagrange.energies) = force;
 }
 
 /* constraint: constraint NAME : expression = expression. Its left side minus its right side is 0. */
@@ -67,7 +67,7 @@ void read_constraint(struct parser *p)
 	constraint.value->start = left->start;
 	constraint.value->end = constraint.end = p->end;
 	constraint.multiplier = declare(p, name, SYMBOL_MULTIPLIER, false);
-	*MORE(p->spec->energy, p->spec->energies) = constraint;
+	*MORE(p->spec->lagrange.energy, p->spec->lagrange.energies) = constraint;
 }
 
 /* ---- which coordinates stand in them ---- */
@@ -91,8 +91,8 @@ static bool *coordinates_in(const struct spec *spec, char kind)
 {
 	bool *named = ARRAY(bool, (size_t)spec->count.components + 1);
 	bool *seen = ARRAY(bool, (size_t)spec->count.symbols + 1);
-	for (int i = 0; i < spec->energies; i++) {
-		const struct energy *energy = &spec->energy[i];
+	for (int i = 0; i < spec->lagrange.energies; i++) {
+		const struct energy *energy = &spec->lagrange.energy[i];
 		if (!kind || energy->kind == kind)
 			mark(energy->point ? energy->point : energy->value, named, seen);
 	}
@@ -101,7 +101,7 @@ static bool *coordinates_in(const struct spec *spec, char kind)
 
 bool has_kinetic_energy(const struct spec *spec, int component)
 {
-	return spec->energies > 0 && coordinates_in(spec, 'T')[component];
+	return spec->lagrange.energies > 0 && coordinates_in(spec, 'T')[component];
 }
 
 bool is_constrained(const struct spec *spec, int component)
@@ -111,7 +111,7 @@ bool is_constrained(const struct spec *spec, int component)
 
 static void add_element(struct spec *spec, struct symbol *coord, int component)
 {
-	const struct energy *first = &spec->energy[0];
+	const struct energy *first = &spec->lagrange.energy[0];
 	struct node *from = node_new(NODE_NAME, coord->at);
 	from->symbol = coord;
 	from->component = component;
@@ -123,7 +123,7 @@ static void add_element(struct spec *spec, struct symbol *coord, int component)
 
 void add_energy_elements(struct spec *spec)
 {
-	const bool *named = spec->energies ? coordinates_in(spec, 0) : NULL;
+	const bool *named = spec->lagrange.energies ? coordinates_in(spec, 0) : NULL;
 	for (struct symbol *s = spec->first; s && named; s = s->next)
 		for (int i = 0; s->kind == SYMBOL_COORD && !s->broken && i < (s->length ? s->length : 1); i++)
 			if (named[s->index + i])
@@ -169,9 +169,9 @@ static struct node *energy_of_element(const struct element *element)
 static struct node *total_energy(const struct spec *spec, bool kinetic, struct place at)
 {
 	struct node *sum = node_new(NODE_SUM, at);
-	for (int i = 0; i < spec->energies; i++)
-		if (spec->energy[i].kind == 'T' || (spec->energy[i].kind == 'V' && !kinetic))
-			add_child(sum, spec->energy[i].value, false, at);
+	for (int i = 0; i < spec->lagrange.energies; i++)
+		if (spec->lagrange.energy[i].kind == 'T' || (spec->lagrange.energy[i].kind == 'V' && !kinetic))
+			add_child(sum, spec->lagrange.energy[i].value, false, at);
 	for (int i = 0; i < spec->elements; i++) {
 		const struct element *element = &spec->element[i];
 		struct node *energy = kinetic && element->kind != ELEMENT_MASS ? NULL : energy_of_element(element);
@@ -223,8 +223,8 @@ static struct node *total_power(const struct spec *spec, struct place at)
 {
 	struct node *sum = node_new(NODE_SUM, at), *zero = node_new(NODE_NUMBER, at);
 	add_child(sum, zero, false, at);
-	for (int i = 0; i < spec->energies; i++)
-		add_power(sum, &spec->energy[i], at);
+	for (int i = 0; i < spec->lagrange.energies; i++)
+		add_power(sum, &spec->lagrange.energy[i], at);
 	for (int i = 0; i < spec->elements; i++) {
 		const struct element *e = &spec->element[i];
 		struct node *energy = energy_of_element(e), *slide = difference(e, 1);
@@ -250,7 +250,7 @@ static void fill_total(void *context)
 		error(at, format("output NAME = ... writes it; the first of them: %s",
 				 text_between(spec->equation[0].at, spec->equation[0].end)),
 		      "the %s of written equations is not known", total->let->name);
-	if (spec->energies + spec->elements == 0)
+	if (spec->lagrange.energies + spec->elements == 0)
 		error(at, NULL, "there are no energies, masses and springs of which this is the %s", total->let->name);
 	struct node *value = total->kind == TOTAL_POWER ? total_power(spec, at)
 							: total_energy(spec, total->kind == TOTAL_MOMENTUM, at);
@@ -261,7 +261,7 @@ static void fill_total(void *context)
 
 void fill_totals(struct spec *spec)
 {
-	for (int i = 0; i < spec->totals; i++)
-		if (!statement_guard(fill_total, &(struct filling){ spec, &spec->total[i] }))
-			spec->total[i].let->broken = true;
+	for (int i = 0; i < spec->lagrange.totals; i++)
+		if (!statement_guard(fill_total, &(struct filling){ spec, &spec->lagrange.total[i] }))
+			spec->lagrange.total[i].let->broken = true;
 }

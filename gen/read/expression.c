@@ -69,7 +69,7 @@ const struct unit *take_unit(struct parser *p, const struct node *value)
 		check_last_number(value, p->token.at);
 	struct token token = take(p);
 	struct place inside = { token.at.source, token.at.offset + 1 };
-	p->spec->units = true;
+	p->spec->units.written = true;
 	return unit_parse(inside, token.at.source->text + inside.offset, token.length - 2);
 }
 
@@ -168,7 +168,7 @@ static struct symbol *total_symbol(struct parser *p, int kind, struct token name
 				.index = spec->count.lets++, .number = ++spec->count.symbols };
 	*spec->last = let;                      /* no other statement finds it by its name */
 	spec->last = &let->next;
-	*MORE(spec->total, spec->totals) = (struct total){ kind, let, coord };
+	*MORE(spec->lagrange.total, spec->lagrange.totals) = (struct total){ kind, let, coord };
 	return let;
 }
 

@@ -117,7 +117,7 @@ void read_draw(struct parser *p)
 		drawing.turn = read_quantity(p);
 	expect_end(p);
 	drawing.end = p->end;
-	*MORE(p->spec->drawing, p->spec->drawings) = drawing;
+	*MORE(p->spec->page.drawing, p->spec->page.drawings) = drawing;
 }
 
 int nodes_of_drawing(const struct drawing *d, struct node **node)

@@ -321,29 +321,27 @@ struct spec {                       /* what the text says, names resolved, nothi
 	struct equation *equation;
 	int elements;
 	struct element *element;
-	int energies;
-	struct energy *energy;
-	int drawings;
-	struct drawing *drawing;
-	int drawn;                  /* the last so many outputs are none of the text: drawings of a page read them */
-	int totals;
-	struct total *total;
+	struct { int energies; struct energy *energy; int totals; struct total *total; } lagrange;
+	struct {
+		int drawings;
+		struct drawing *drawing;
+		int outputs;        /* the last so many outputs are none of the text: drawings read them */
+	} page;
 	int whens;                      /* in the order in which they act at one instant */
 	struct when *when;
 	struct { int files; const char **file; } data;  /* for the dependency file */
-	int initials;
-	struct initial *initial;
+	struct { int initials; struct initial *initial; int ranges; struct state_bound *range; } states;
 	struct requested_scheme request;
-	int ranges;
-	struct state_bound *range;
 	struct requested_operators operators;
-	int tunables, derived;      /* the last `derived` of them follow from the others: derived.c */
-	struct tunable *tunable;
+	struct {
+		int count, derived; /* the last `derived` of them follow from the others: derived.c */
+		struct tunable *tunable;
+	} tuned;
 	int sensitivities;
 	struct sensitivity *sensitivity;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
-	bool units, adopted;        /* some are written: dimensions are checked, unless they are another spec's */
+	struct { bool written, adopted; } units; /* dimensions are checked, unless they are another spec's */
 	struct place end;
 };
 struct spec *parse_spec(const struct source *source);

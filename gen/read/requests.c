@@ -41,10 +41,10 @@ static void read_interval(struct parser *p, const char *example, struct node **l
 void read_range(struct parser *p)
 {
 	do {
-		struct state_bound range = read_bound_name(p, p->spec->ranges, p->spec->range, "range");
+		struct state_bound range = read_bound_name(p, p->spec->states.ranges, p->spec->states.range, "range");
 		expect_word(p, "in");
 		read_interval(p, "range x", &range.low, &range.high);
-		add_bound(&p->spec->range, &p->spec->ranges, range);
+		add_bound(&p->spec->states.range, &p->spec->states.ranges, range);
 	} while (take_op(p, ","));
 	expect_end(p);
 }
@@ -200,14 +200,14 @@ void read_tunable(struct parser *p)
 			      symbol_kind(symbol), symbol->name);
 		if (symbol->tuning.tuned)
 			error(token.at, NULL, "'%s' is tunable already", symbol->name);
-		if (spec->tunables == LIMIT_TUNABLES)
+		if (spec->tuned.count == LIMIT_TUNABLES)
 			error(token.at, NULL, "more tunable params than the limit of %d", LIMIT_TUNABLES);
 		struct tunable tunable = { token.at, symbol, NULL, NULL };
 		if (take_word(p, "in"))
 			read_interval(p, "tunable k", &tunable.low, &tunable.high);
 		symbol->tuning.tuned = true;
-		symbol->tuning.number = spec->tunables + 1;
-		*MORE(spec->tunable, spec->tunables) = tunable;
+		symbol->tuning.number = spec->tuned.count + 1;
+		*MORE(spec->tuned.tunable, spec->tuned.count) = tunable;
 	} while (take_op(p, ","));
 	expect_end(p);
 }

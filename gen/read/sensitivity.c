@@ -123,8 +123,8 @@ const struct node *jump_by_state(const struct spec *spec)
 	}
 	for (int i = 0; i < spec->elements && !found; i++)
 		found = jump_within(spec->element[i].value, seen);
-	for (int i = 0; i < spec->energies && !found; i++)
-		found = jump_within(spec->energy[i].value, seen);
+	for (int i = 0; i < spec->lagrange.energies && !found; i++)
+		found = jump_within(spec->lagrange.energy[i].value, seen);
 	return found;
 }
 
@@ -227,13 +227,13 @@ static void add_energy(struct varying *v, struct energy e)
 	e.of = own.multiplier;
 	e.multiplier = e.of ? v->by.moved[e.of->number] : NULL;
 	if (!is_zero_node(e.value))
-		*MORE(spec->energy, spec->energies) = e;
+		*MORE(spec->lagrange.energy, spec->lagrange.energies) = e;
 	if (!own.point)
 		return;
 	e.value = own.value;
 	e.point = slope_by(own.point, v->by);
 	if (!is_zero_node(e.point))
-		*MORE(spec->energy, spec->energies) = e;
+		*MORE(spec->lagrange.energy, spec->lagrange.energies) = e;
 }
 
 static void add_initial_node(struct varying *v, const struct initial *like, struct node *value)
@@ -241,14 +241,14 @@ static void add_initial_node(struct varying *v, const struct initial *like, stru
 	struct initial made = *like;
 	made.coord = v->by.moved[like->coord->number];
 	made.value = value;
-	*MORE(v->spec->initial, v->spec->initials) = made;
+	*MORE(v->spec->states.initial, v->spec->states.initials) = made;
 }
 
 static void add_initials_of(struct varying *v, int initials)
 {
 	const struct sensitivity *of = v->of;
 	for (int i = 0; i < initials; i++) {
-		const struct initial like = v->spec->initial[i];
+		const struct initial like = v->spec->states.initial[i];
 		struct node *value = slope_by(like.value, v->by);
 		/* beside constraints what is not named follows */
 		if (!is_zero_node(value) || v->spec->count.multipliers > 0)
@@ -288,7 +288,7 @@ static void vary(struct varying *v, struct extent before)
 	v->first = spec->count.components;
 	add_moved(v, before.symbols);
 	for (int i = 0; i < before.energies; i++)
-		add_energy(v, spec->energy[i]);
+		add_energy(v, spec->lagrange.energy[i]);
 	for (int i = 0; i < before.equations; i++)
 		add_equation(v, spec->equation[i]);
 	for (int i = 0; i < before.elements; i++)
@@ -319,8 +319,8 @@ void add_derivatives(struct spec *spec, int first, int count)
 {
 	if (count == 0)
 		return;
-	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->energies,
-				       spec->initials, spec->count.components };
+	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->lagrange.energies,
+				       spec->states.initials, spec->count.components };
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
 		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };
@@ -328,6 +328,7 @@ void add_derivatives(struct spec *spec, int first, int count)
 		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;
 		vary(&v, before);
 	}
-	spec->adopted = true;                   /* units have been looked at, */
-	spec->ranges = spec->required.needs = 0; /* and what is said of states and outputs is of the model's own */
+	spec->units.adopted = true;                   /* units have been looked at, */
+	spec->states.ranges = 0;                      /* and what is said of states and outputs is of the model's own */
+	spec->required.needs = 0;
 }

@@ -255,12 +255,13 @@ void read_input(struct parser *p)
 void add_initial(struct parser *p, struct token name, struct symbol *coord, int component, struct node *value)
 {
 	struct spec *spec = p->spec;
-	for (int i = 0; i < spec->initials; i++)
-		if (spec->initial[i].coord == coord && spec->initial[i].primes == name.primes &&
-		    spec->initial[i].part == p->part &&
-		    (!component || !spec->initial[i].component || spec->initial[i].component == component))
+	for (int i = 0; i < spec->states.initials; i++) {
+		const struct initial *other = &spec->states.initial[i];
+		if (other->coord == coord && other->primes == name.primes && other->part == p->part &&
+		    (!component || !other->component || other->component == component))
 			error(name.at, NULL, "the initial value of %s is given already", token_text(name));
-	*MORE(spec->initial, spec->initials) =
+	}
+	*MORE(spec->states.initial, spec->states.initials) =
 		(struct initial){ name.at, p->part, p->statement, coord, name.primes, component, value };
 }
 

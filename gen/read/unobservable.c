@@ -180,7 +180,7 @@ static void name_unobservable(struct spec *spec, const struct symbol *coord)
 static void drop_symbols(struct sight *sight, const bool *gone)
 {
 	struct spec *spec = sight->spec;
-	spec->count.components = spec->count.coords = spec->count.inputs = spec->tunables = 0;
+	spec->count.components = spec->count.coords = spec->count.inputs = spec->tuned.count = 0;
 	for (struct symbol *s = spec->first, **link = &spec->first; s; s = s->next) {
 		bool drop = gone[s->number] && s->kind != SYMBOL_PARAM;
 		if (drop && s->kind == SYMBOL_COORD)
@@ -218,20 +218,20 @@ static void drop_others(struct spec *spec, const bool *gone, int tunables)
 {
 	int initials = 0, fixeds = 0;
 	for (int i = 0; i < tunables; i++)
-		if (!gone[spec->tunable[i].symbol->number])
-			spec->tunable[spec->tunables++] = spec->tunable[i];
-	for (int i = 0; i < spec->tunables; i++)
-		spec->tunable[i].symbol->tuning.number = i + 1;
-	for (int i = 0; i < spec->initials; i++)
-		if (!gone[spec->initial[i].coord->number])
-			spec->initial[initials++] = spec->initial[i];
+		if (!gone[spec->tuned.tunable[i].symbol->number])
+			spec->tuned.tunable[spec->tuned.count++] = spec->tuned.tunable[i];
+	for (int i = 0; i < spec->tuned.count; i++)
+		spec->tuned.tunable[i].symbol->tuning.number = i + 1;
+	for (int i = 0; i < spec->states.initials; i++)
+		if (!gone[spec->states.initial[i].coord->number])
+			spec->states.initial[initials++] = spec->states.initial[i];
 	for (int i = 0; i < spec->operators.fixeds; i++)
 		if (!spec->operators.fixed[i].symbol || !gone[spec->operators.fixed[i].symbol->number])
 			spec->operators.fixed[fixeds++] = spec->operators.fixed[i];
-	spec->initials = initials;
+	spec->states.initials = initials;
 	spec->operators.fixeds = fixeds;
 	spec->operators.given = fixeds > 0;
-	drop_bounds(&spec->ranges, spec->range, gone);
+	drop_bounds(&spec->states.ranges, spec->states.range, gone);
 	drop_bounds(&spec->request.absolutes, spec->request.absolute_of, gone);
 }
 
@@ -281,7 +281,7 @@ void leave_unobservable(struct spec *spec)
 	bool *gone = ARRAY(bool, symbols);
 	for (const struct symbol *s = spec->first; s; s = s->next)
 		gone[s->number] = goes(&sight, s);
-	int tunables = spec->tunables;
+	int tunables = spec->tuned.count;
 	drop_symbols(&sight, gone);
 	drop_others(spec, gone, tunables);
 	drop_ties(&sight, tie);

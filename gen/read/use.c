@@ -290,7 +290,7 @@ struct spec *parse_spec(const struct source *source)
 {
 	open_assembly(source);
 	struct spec *spec = parse_whole(source, &reader);
-	if (spec->assembly.parts && !spec->energies && !spec->totals && !diagnostics_errors())
+	if (spec->assembly.parts && !spec->lagrange.energies && !spec->lagrange.totals && !diagnostics_errors())
 		leave_unobservable(spec);       /* energies tie together what stands in them */
 	fill_totals(spec);
 	add_energy_elements(spec);
@@ -307,7 +307,7 @@ const char *written_text(const struct assembly_part *part, struct place at, stru
 
 const char *energy_text(const struct spec *spec, int index)
 {
-	const struct energy *e = &spec->energy[index];
+	const struct energy *e = &spec->lagrange.energy[index];
 	const bool begins = index == 0 || e[-1].at.offset != e->at.offset || e[-1].at.source != e->at.source;
 	return begins ? written_text(e->part, e->at, e->end) : NULL;
 }

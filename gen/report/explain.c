@@ -292,7 +292,7 @@ void text_written(FILE *to, const struct step *step)
 	for (int i = 0; i < spec->elements; i++)
 		if (element[i].kind != ELEMENT_ENERGY)
 			fprintf(to, "    %s\n", written_text(element[i].part, element[i].at, element[i].end));
-	for (int i = 0; i < spec->energies; i++)
+	for (int i = 0; i < spec->lagrange.energies; i++)
 		if (energy_text(spec, i))
 			fprintf(to, "    %s\n", energy_text(spec, i));
 }
@@ -303,9 +303,9 @@ void text_equations(FILE *to, const struct step *step)
 	const struct spec *spec = model->spec;
 	text_point(to, step);
 	text_written(to, step);
-	for (int i = 0; i < spec->drawings; i++)
+	for (int i = 0; i < spec->page.drawings; i++)
 		fprintf(to, "    %s\n",
-			written_text(spec->drawing[i].part, spec->drawing[i].at, spec->drawing[i].end));
+			written_text(spec->page.drawing[i].part, spec->page.drawing[i].at, spec->page.drawing[i].end));
 	text_assembly(to, spec);
 	if (spec->elements) {
 		fputs("\nEquations of the sketch:\n\n", to);

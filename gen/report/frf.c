@@ -30,11 +30,11 @@ static void need_transfers(const struct model *model)
 {
 	struct drive *drive;
 	if (model->system.states > LIMIT_TRANSFERS)
-		error(model->request.step_at, "--reduce or --modes makes it smaller",
+		error(model->request.at.step, "--reduce or --modes makes it smaller",
 		      "the model has %d states: frequency responses are limited to %d", model->system.states,
 		      LIMIT_TRANSFERS);
 	if (drives_of(model, &drive) == 0)
-		error(model->request.step_at, "input u, and u in an equation",
+		error(model->request.at.step, "input u, and u in an equation",
 		      "there is no input and no load that an output could respond to");
 }
 

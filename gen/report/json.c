@@ -251,8 +251,8 @@ static const char *place_text(const struct node *node)
 static void json_drawings(FILE *to, const struct spec *spec)
 {
 	fputs("  \"drawing\": [", to);
-	for (int i = 0; i < spec->drawings; i++) {
-		const struct drawing *d = &spec->drawing[i];
+	for (int i = 0; i < spec->page.drawings; i++) {
+		const struct drawing *d = &spec->page.drawing[i];
 		fprintf(to, "%s{\"what\": \"%s\"", i ? ",\n    " : "", d->what);
 		for (int k = 0; k < d->points; k++)
 			fprintf(to, ", \"%s\": [\"%s\", \"%s\"]", d->points == 1 ? "at" : k ? "to" : "from",
@@ -293,7 +293,7 @@ void explain_json(FILE *to, const struct step *step)
 		json_modal_truncation(to, model);
 	if (model->spec->assembly.parts)
 		json_assembly(to, model->spec);
-	if (model->spec->drawings)
+	if (model->spec->page.drawings)
 		json_drawings(to, model->spec);
 	if (model->written->equations.free)
 		json_symmetries(to, model->written);

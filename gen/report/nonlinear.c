@@ -57,7 +57,7 @@ static const char *stability_of_step(const struct step *step)
 
 void text_point(FILE *to, const struct step *step)
 {
-	const char *at = step->shown->model->request.linearised_at;
+	const char *at = step->shown->model->request.linear.found;
 	if (at)
 		fprintf(to, "Linear equations of the deviations from %s.\nThey are %s.\n\n", at,
 			stability_of_step(step));
@@ -65,7 +65,7 @@ void text_point(FILE *to, const struct step *step)
 
 void json_point(FILE *to, const struct step *step)
 {
-	const char *at = step->shown->model->request.linearised_at;
+	const char *at = step->shown->model->request.linear.found;
 	if (at)
 		fprintf(to, "  \"linearised\": {\"at\": \"%s\", \"stability\": \"%s\"},\n", json_text(at),
 			stability_of_step(step));

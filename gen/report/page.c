@@ -278,7 +278,7 @@ static void print_chosen(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	fprintf(to, "<p>Scheme %s%s, form %s, h = %s s, numbers of type %s.</p>\n", scheme_name(model->scheme),
-		model->request.scheme_at.source ? " (asked for)" : " (best that the model allows)",
+		model->request.at.scheme.source ? " (asked for)" : " (best that the model allows)",
 		step_form_text(step),
 		readable_text(model->h), target_name());
 	if (model->nonlinear.obstacle && model->nonlinear.why)

@@ -133,7 +133,7 @@ static void plot_modes(struct picture *p)
 	int count = shapes_of_step(p->step, &shape, &of);
 	int shown = count < SHAPES ? count : SHAPES;
 	if (of->system.n > LIMIT_SHAPES)
-		error(of->request.step_at, NULL, "the model has %d coordinates: mode shapes are limited to %d",
+		error(of->request.at.step, NULL, "the model has %d coordinates: mode shapes are limited to %d",
 		      of->system.n, LIMIT_SHAPES);
 	note_first(shown, count, "mode shapes");
 	for (int k = 0; k < shown; k++) {
@@ -318,10 +318,10 @@ static void need_responses(const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	if (model->switching || has_remainder(step))
-		error(model->request.step_at, "plrun --plot draws a run of any model",
+		error(model->request.at.step, "plrun --plot draws a run of any model",
 		      "the model is not linear: its response has no closed form that could be drawn");
 	if (model->system.inputs)
-		error(model->request.step_at, "plrun --plot draws a run with a record",
+		error(model->request.at.step, "plrun --plot draws a run with a record",
 		      "the model has inputs, whose samples are not known: its response cannot be drawn");
 }
 
@@ -349,7 +349,7 @@ static void print_samples(struct picture *p, int count, const int *output)
 		progress("row", (int)k, (int)last);
 		fprintf(p->data, "%.17g", nearest_double(t));
 		for (int i = 0; i < count; i++)
-			fprintf(p->data, " %.17g", started_value(forms[i], form[i], t, false, model->request.step_at,
+			fprintf(p->data, " %.17g", started_value(forms[i], form[i], t, false, model->request.at.step,
 								 model->output[output[i]].name).value);
 		fputc('\n', p->data);
 		mpq_add(t, t, interval);
@@ -486,7 +486,7 @@ static struct picture picture_of(const struct step *step, const char *list, cons
 		name += length;
 	}
 	if (p.height[0] == begun)
-		error(step->model->request.step_at, NULL,
+		error(step->model->request.at.step, NULL,
 		      "there is nothing to draw: no output that is linear reacts to an input or a load");
 	return p;
 }

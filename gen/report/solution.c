@@ -12,7 +12,7 @@
 
 static void check_outputs(const struct model *model)
 {
-	refuse(CAN_SOLUTION, model, model->request.end_at);
+	refuse(CAN_SOLUTION, model, model->request.at.end);
 	for (int j = 0; j < model->outputs; j++)
 		if (!model->output[j].form && model->output[j].value)
 			error(model->output[j].value->start,
@@ -22,7 +22,7 @@ static void check_outputs(const struct model *model)
 		/* the rate of what a stop, friction or another piecewise linear term acts on */
 		if (model->switching &&
 		    !rationals_zero((size_t)model->remainder.force_columns, model->output[j].force_column))
-			error(model->output[j].value ? model->output[j].value->start : model->request.end_at,
+			error(model->output[j].value ? model->output[j].value->start : model->request.at.end,
 			      "positions, velocities and loads have one formula in all of them",
 			      "output '%s' has another formula in each region, which --solution does not print",
 			      model->output[j].name);
@@ -35,7 +35,7 @@ static unsigned long last_step(const struct model *model, mpq_srcptr end)
 	mpq_div(steps, end, model->h);
 	mpz_fdiv_q(last, mpq_numref(steps), mpq_denref(steps));
 	if (mpz_cmp_ui(last, LIMIT_ROWS) >= 0)
-		error(model->request.end_at, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
+		error(model->request.at.end, NULL, "--solution would print more rows than the limit of %d", LIMIT_ROWS);
 	unsigned long rows = mpz_get_ui(last);
 	return rows;
 }
@@ -112,7 +112,7 @@ static bool print_row(struct printing *p, const struct trajectory *t, mpq_srcptr
 			return false;
 		}
 		if (!isfinite(value[j]))
-			error(model->request.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+			error(model->request.at.end, NULL, "output '%s' leaves the range of double at t = %s s",
 			      model->output[j].name, readable_text(time));
 	}
 	fprintf(p->to, "%.17g", nearest_double(time));
@@ -173,7 +173,7 @@ static void print_trajectory(FILE *to, const struct model *model, unsigned long 
 		before = p.why;
 		if (next > MOST_BITS || equal == EQUAL) {
 			progress_end();
-			error(model->request.end_at, "until then it is known: a shorter --solution prints it", "%s",
+			error(model->request.at.end, "until then it is known: a shorter --solution prints it", "%s",
 			      p.why);
 		}
 	}
@@ -204,9 +204,9 @@ void print_solution(FILE *to, const struct model *model, struct resolvent *writt
 		fprintf(to, "%.17g", nearest_double(t));
 		for (int j = 0; j < model->outputs; j++) {
 			struct coefficient value = started_value(form[j].count, form[j].list, t, false,
-								 model->request.step_at, model->output[j].name);
+								 model->request.at.step, model->output[j].name);
 			if (!isfinite(value.value))
-				error(model->request.end_at, NULL, "output '%s' leaves the range of double at t = %s s",
+				error(model->request.at.end, NULL, "output '%s' leaves the range of double at t = %s s",
 				      model->output[j].name, readable_text(t));
 			fprintf(to, ",%.17g", value.value);
 		}

@@ -176,7 +176,7 @@ static void start(struct sweeping *s, const struct drive *drive, double amplitud
 	s->movers = movers_of(s->model, drive, &list);
 	for (int p = 0; p < s->movers; p++)
 		if (!(2 * list[p].rate / s->to->band.from < LIMIT_SAMPLES))
-			error(s->model->request.step_at, "a higher frequency to start from is swept sooner",
+			error(s->model->request.at.step, "a higher frequency to start from is swept sooner",
 			      "a period at %g Hz takes more than %d samples to follow the fastest pole of a region",
 			      s->to->band.from, LIMIT_SAMPLES);
 	s->course = ARRAY(struct course_of_mover, s->movers);
@@ -264,7 +264,7 @@ static _Noreturn void report_remainder(const struct model *model)
 	if (other)
 		error(other->start, way, "--amplitude is of models that are linear between breakpoints: '%s' is not",
 		      text_between(other->start, other->end));
-	error(model->request.scheme_at.source ? model->request.scheme_at : model->request.step_at, way,
+	error(model->request.at.scheme.source ? model->request.at.scheme : model->request.at.step, way,
 	      "--amplitude is of models that are linear between breakpoints, and this has other terms");
 }
 
@@ -289,15 +289,15 @@ static void need_sweeps(const struct step *step)
 	if (has_remainder(step))
 		report_remainder(model);
 	if (!model->switching)
-		error(model->request.step_at, "leave --amplitude out",
+		error(model->request.at.step, "leave --amplitude out",
 		      "the model is linear: its frequency response is the same at every amplitude");
 	if (model->contacts.impacts > 0 || has_friction(model))
-		error(model->request.step_at, "plrun runs any model, with a record that sweeps",
+		error(model->request.at.step, "plrun runs any model, with a record that sweeps",
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (loads_change(&model->system))
-		error(model->request.step_at, NULL, "--amplitude is of equations that are the same at all times");
+		error(model->request.at.step, NULL, "--amplitude is of equations that are the same at all times");
 	if (model->system.states > LIMIT_SWEPT)
-		error(model->request.step_at, NULL, "the model has %d states: sweeps are limited to %d",
+		error(model->request.at.step, NULL, "the model has %d states: sweeps are limited to %d",
 		      model->system.states, LIMIT_SWEPT);
 }
 
@@ -321,7 +321,7 @@ struct sweeps sweeps_of(const struct step *step, struct band band, double amplit
 	need_sweeps(step);
 	int drives = drives_of(model, &drive);
 	if (columns_of(model, drives, drive, &s) == 0)
-		error(model->request.step_at, "input u, and u in an equation",
+		error(model->request.at.step, "input u, and u in an equation",
 		      "there is no input and no changing load that an output linear in states could respond to");
 	for (int k = 0; k < 2; k++) {
 		s.size[k] = ARRAY(double, (size_t)band.count * (size_t)s.count);

@@ -139,7 +139,7 @@ static int roots_of(const struct model *model, const struct transfer *t, struct 
 	INTEGER content = INTEGER_ZERO;
 	struct spectrum *spectrum = spectrum_of(poly_primitive(p, content));
 	if (!spectrum_refine(spectrum, 128))
-		error(model->request.step_at, NULL,
+		error(model->request.at.step, NULL,
 		      "two zeros or poles of %s over %s are too close to each other to be "
 						  "told apart", t->output, t->drive);
 	if (spectrum->zero)

@@ -53,7 +53,7 @@ static const char *list_of(const struct step *step, enum listed kind, int count,
 const char *units_text(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	if (!model->spec->units)
+	if (!model->spec->units.written)
 		return NULL;
 	const char *list[] = { list_of(step, LISTED_STATE, model->system.states, "states "),
 			       list_of(step, LISTED_INPUT, model->spec->count.inputs, "inputs "),
@@ -79,7 +79,7 @@ void json_units(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct tuning *tuning = tunables_of(step->model);
-	if (!model->spec->units)
+	if (!model->spec->units.written)
 		return;
 	fputs("  \"units\": {", to);
 	json_list(to, step, "states", LISTED_STATE, model->system.states, false);

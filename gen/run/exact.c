@@ -38,7 +38,7 @@ static void make_column(const struct making *m, int i)
 		struct coefficient value = { .value = c->value[k * c->needs + first],
 					     .low = c->low[k * c->needs + first] };
 		if (first == i)
-			value = started_value(count, list, t, true, m->full->request.step_at, output->name);
+			value = started_value(count, list, t, true, m->full->request.at.step, output->name);
 		c->value[k * c->needs + i] = value.value;
 		c->low[k * c->needs + i] = value.low;
 		mpq_add(t, t, m->full->h);

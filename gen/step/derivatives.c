@@ -10,7 +10,7 @@
 /* Whose factors the target makes, or whose step is no list of rows: it is stepped as the model is. */
 static bool goes_apart(const struct step *step)
 {
-	return has_remainder(step) || step->model->spec->tunables > 0;
+	return has_remainder(step) || step->model->spec->tuned.count > 0;
 }
 
 /* By the scheme of the model: the derivative of what it computes is what the scheme computes of the derivative. */
@@ -19,7 +19,7 @@ static const char *scheme_of_derivatives(const struct step *step)
 	const struct model *model = step->model;
 	if (!has_remainder(step))
 		return scheme_name(SCHEME_EXACT);
-	return model->request.scheme_at.source ? model->request.scheme : scheme_name(model->scheme);
+	return model->request.at.scheme.source ? model->request.scheme : scheme_name(model->scheme);
 }
 
 /* Of an external function: by every state, then along every input */

@@ -6,7 +6,7 @@
 struct coefficient equation_number(const struct model *model, mpq_srcptr q)
 {
 	if (beyond_range(q))
-		error(model->request.step_at, NULL, "a number of the equations is beyond the range of %s",
+		error(model->request.at.step, NULL, "a number of the equations is beyond the range of %s",
 		      target_name());
 	return (struct coefficient){ .value = round_rational(q), .low = rounding_rest(q), .zero = mpq_sgn(q) == 0 };
 }

@@ -230,7 +230,7 @@ static void count_series(struct step *step)
 	count_expansion(step, step->program);
 	step->taylor.expansion->multiplications = step->program->multiplications;
 	if (step->program->multiplications > LIMIT_SERIES)
-		error(step->model->request.scheme_at, "etdrk4 and the schemes like it loop over tables",
+		error(step->model->request.at.scheme, "etdrk4 and the schemes like it loop over tables",
 		      "its series of order %d has %d multiplications, more than the limit of %d: compilers take "
 		      "minutes",
 		      step->taylor.expansion->order, step->program->multiplications, LIMIT_SERIES);
@@ -258,7 +258,7 @@ static void need_all_known(struct step *step)
 					  : NULL;
 	if (model->truncation.over < 2 || !why)
 		return;
-	stand_aside(model->request.scheme_over->start, format("over %d", model->truncation.over), why);
+	stand_aside(model->request.series.over->start, format("over %d", model->truncation.over), why);
 	step->plain = model_copy(model);
 	step->plain->truncation.over = 1;
 	abandon();
@@ -300,7 +300,7 @@ static void build_collocated_step(struct step *step)
 	bool switches = scheme_row(step->model->scheme)->switches;
 	int coords = step->model->n;
 	if (coords > LIMIT_COLLOCATED)
-		error(step->model->request.scheme_at, "etdrk4 and the schemes like it loop over tables",
+		error(step->model->request.at.scheme, "etdrk4 and the schemes like it loop over tables",
 		      "scheme %s is built for up to %d coordinates, whose matrices stand on the stack: the model has "
 		      "%d",
 		      scheme_name(step->model->scheme), LIMIT_COLLOCATED, coords);
@@ -365,7 +365,7 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 static void check_event_splits(const struct model *model)
 {
 	if (has_contacts(model) && !scheme_row(model->scheme)->expands)
-		refuse(CAN_SPLIT, model, model->request.scheme_at);
+		refuse(CAN_SPLIT, model, model->request.at.scheme);
 }
 
 static void build(void *context)
@@ -381,7 +381,7 @@ static void build(void *context)
 	if (step->is.flow == FLOW_NORMAL)
 		refuse(CAN_NORMAL, model, scheme_place(step));
 	if (step->is.two_words)
-		refuse(CAN_COMPENSATED, model, model->request.compensated_at);
+		refuse(CAN_COMPENSATED, model, model->request.at.compensated);
 	take_operators(step);
 	if (scheme_row(model->scheme)->holds_coupling)
 		find_growth(step);

@@ -7,7 +7,7 @@
 
 void report_range(const struct step *step)
 {
-	error(step->model->request.step_at, NULL, "a number of the equations is beyond the range of %s", target_name());
+	error(step->model->request.at.step, NULL, "a number of the equations is beyond the range of %s", target_name());
 }
 
 /* Does this entry of x belong to a load that the step leaves out? */

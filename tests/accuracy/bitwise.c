@@ -151,8 +151,8 @@ static void compare_outputs(void *context)
             mpq_set_ui(t, multiples[k], 1);
             mpq_mul(t, t, r->full->h);
             trial.time = format("%lu h", multiples[k]);
-            const double expected = started_value(fs, f, t, false, r->full->request.step_at, name).value;
-            compare(name, started_value(gs, g, t, false, r->full->request.step_at, name).value, expected);
+            const double expected = started_value(fs, f, t, false, r->full->request.at.step, name).value;
+            compare(name, started_value(gs, g, t, false, r->full->request.at.step, name).value, expected);
         }
     }
     mpq_clear(t);

@@ -131,7 +131,7 @@ static void compare_solution_values(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
+            const struct coefficient c = started_value(count, list, t, false, model->request.at.step,
                                                        model->output[o].name);
             compare(model->output[o].name, c.value, work->expected[first + (size_t)o]);
         }
@@ -312,7 +312,7 @@ static void compare_changes(void *context)
             struct started *list;
             const int count =
                 responses_of_output(resolvent, &model->system, (const mpq_t *)model->initial, &model->output[o], &list);
-            const struct coefficient c = started_value(count, list, t, false, model->request.step_at,
+            const struct coefficient c = started_value(count, list, t, false, model->request.at.step,
                                                        model->output[o].name);
             compare_driven(model, &a, segment, &model->output[o], y, c.value);
         }

@@ -260,7 +260,7 @@ static int try_text(const char *text)
         if (!there)
             continue;                           /* singular there, or a load has gone */
         for (int k = t->given; k < t->params; k++)
-            param_value(there->spec->tunable[k].symbol, values[k]);
+            param_value(there->spec->tuned.tunable[k].symbol, values[k]);
         mpq_t *value = rows_at(t, (const mpq_t *)values);
         if (!value)
             complain("a divisor is 0, but the model there is none");

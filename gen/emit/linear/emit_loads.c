@@ -238,7 +238,7 @@ static const char *now_of(const struct emitter *e, const char *what, const char 
 		return format("%s_add(%s, %s_node_%s[node][%d])", type, kept, e->name, what, i);
 	if (e->after)
 		return later(e, what, type, i);
-	if ((!e->step->refresh && !(e->at && e->at->since)) || e->at_refresh)
+	if ((!e->step->refresh && !(e->at && e->at->since)) || e->refresh.keeps)
 		return kept;
 	return format("%s_add(%s, %s_times(%s_%s_step[%d], s->since))", type, kept, type, e->name, what, i);
 }
@@ -251,7 +251,7 @@ static const char *envelope_now(const struct emitter *e, int i)
 /* load1[0]; in the refresh s->phasor[0] */
 static const char *load_cell(const struct emitter *e, int load, int column)
 {
-	return e->at_refresh ? format("s->phasor[%d]", e->phasor[load] + column)
+	return e->refresh.keeps ? format("s->phasor[%d]", e->refresh.phasor[load] + column)
 			    : format("load%d[%d]", load + 1, column);
 }
 
@@ -276,7 +276,7 @@ void emit_load_functions(const struct emitter *e, int l)
 {
 	const struct load *load = &e->system->load[l];
 	bool turns = oscillates(load->forcing), grows = e->envelope[l] >= 0;
-	const char *pair = e->at_refresh ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
+	const char *pair = e->refresh.keeps ? format("&%s", load_cell(e, l, 0)) : format("load%d", l + 1);
 	if (turns)
 		say(e, "    pl_cossin(%s, %s);\n", now_of(e, "phase", "pl_phase", e->phase[l]), pair);
 	if (turns && grows)

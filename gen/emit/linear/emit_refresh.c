@@ -37,7 +37,7 @@ static bool are_rotated(const struct emitter *e)
 {
 	bool any = e->step->refresh->rotated;
 	for (int l = 0; l < e->system->loads; l++)
-		any = any || (e->phasor[l] >= 0 &&
+		any = any || (e->refresh.phasor[l] >= 0 &&
 			      (outputs_read(e, l) || (e->step->forced && e->step->forced->load[l])));
 	return any;
 }
@@ -47,7 +47,7 @@ static int turn_place(const struct emitter *e, int load)
 {
 	int place = 0;
 	for (int l = 0; l < load; l++)
-		place += e->phasor[l] < 0 ? 0 : oscillates(e->system->load[l].forcing) ? 2 : 1;
+		place += e->refresh.phasor[l] < 0 ? 0 : oscillates(e->system->load[l].forcing) ? 2 : 1;
 	return place;
 }
 
@@ -59,7 +59,7 @@ static void emit_turns(const struct emitter *e)
 	const char *list = "";
 	for (int l = 0; l < e->system->loads; l++) {
 		int place = turn_place(e, l);
-		if (e->phasor[l] < 0)
+		if (e->refresh.phasor[l] < 0)
 			continue;
 		list = format("%s%s%s", list, *list ? "; " : "", column_text(&e->system->load[l], 0));
 		for (int k = 0; k < refresh->steps; k++)
@@ -84,10 +84,10 @@ static void emit_refresh(const struct emitter *e)
 {
 	struct emitter there = *e;
 	bool time = false, envelope = false;
-	there.at_refresh = true;
+	there.refresh.keeps = true;
 	for (int l = 0; l < e->system->loads; l++) {
-		time = time || (e->phasor[l] >= 0 && e->system->load[l].powers > 1);
-		envelope = envelope || (e->phasor[l] >= 0 && e->envelope[l] >= 0 && e->phase[l] >= 0);
+		time = time || (e->refresh.phasor[l] >= 0 && e->system->load[l].powers > 1);
+		envelope = envelope || (e->refresh.phasor[l] >= 0 && e->envelope[l] >= 0 && e->phase[l] >= 0);
 	}
 	open_function(e, "A refresh now: functions of the loads, from phases that lose nothing however long a run is",
 		      "static void $n_refresh_phasors($n *s)");
@@ -98,7 +98,7 @@ static void emit_refresh(const struct emitter *e)
 	emit_catch_up(e, "phase", "pl_phase", e->phases);
 	emit_catch_up(e, "envelope", "pl_envelope", e->envelopes);
 	for (int l = 0; l < e->system->loads; l++)
-		if (e->phasor[l] >= 0)
+		if (e->refresh.phasor[l] >= 0)
 			emit_load_functions(&there, l);
 	say(e, "    s->since = 0;\n");
 	close_function(e, "");
@@ -121,11 +121,11 @@ void emit_refresh_members(const struct emitter *e)
 	if (!e->step->refresh)
 		return;
 	for (int l = 0; l < e->system->loads; l++)
-		for (int k = 0; k < e->system->load[l].columns && e->phasor[l] >= 0; k++)
+		for (int k = 0; k < e->system->load[l].columns && e->refresh.phasor[l] >= 0; k++)
 			list = format("%s%s%s", list, *list ? ", " : "", column_text(&e->system->load[l], k));
 	say(e, "    double phasor[%d];     /* %s at the refresh */\n"
 	       "    uint32_t since;       /* steps since then, at most %d */\n",
-	    e->refreshed, list, e->step->refresh->steps - 1);
+	    e->refresh.states, list, e->step->refresh->steps - 1);
 }
 
 /* ---- load states from a refresh ---- */
@@ -138,7 +138,7 @@ static bool emit_values_at_refresh(const struct emitter *e, const bool *loads)
 		const struct load *load = &e->system->load[l];
 		const char *cells = "", *names = "";
 		for (int k = 0; k < load->columns; k++) {
-			cells = format("%s%ss->phasor[%d]", cells, k ? ", " : "", e->phasor[l] + k);
+			cells = format("%s%ss->phasor[%d]", cells, k ? ", " : "", e->refresh.phasor[l] + k);
 			names = format("%s%s%s", names, k ? ", " : "", column_text(load, k));
 		}
 		others[l] = loads[l] && !is_refreshed(e->step, l);
@@ -165,7 +165,7 @@ void emit_refreshed_loads(const struct emitter *e, const bool *loads)
 /* e^{a tau} cos(x + w tau), sin likewise, from those at the refresh */
 static void emit_rotated_load(const struct emitter *e, int l)
 {
-	int turn = turn_place(e, l), at = e->phasor[l], number = l + 1;
+	int turn = turn_place(e, l), at = e->refresh.phasor[l], number = l + 1;
 	emit_load_array(e, l);
 	if (oscillates(e->system->load[l].forcing))
 		say(e, "    load%d[0] = turn[%d] * s->phasor[%d] - turn[%d] * s->phasor[%d];\n"
@@ -180,7 +180,7 @@ void emit_rotated_loads(const struct emitter *e, const bool *loads, bool time_is
 {
 	bool *others = ARRAY(bool, (size_t)e->system->loads), any = false, time = time_is_there;
 	for (int l = 0; l < e->system->loads; l++) {
-		bool rotated = loads[l] && e->phasor[l] >= 0;
+		bool rotated = loads[l] && e->refresh.phasor[l] >= 0;
 		any = any || rotated;
 		others[l] = loads[l] && !rotated;
 		if (rotated && e->system->load[l].powers > 1 && !time) {

@@ -229,7 +229,7 @@ void emit_crossing(const struct emitter *e, const struct pieces *p)
 	emit_bounds(e, p);
 	emit_full(e, p);
 	emit_turn(e, &turns);
-	if (strcmp(e->degree, e->own) == 0)     /* else they are there already */
+	if (strcmp(e->spelled.degree, e->spelled.own) == 0) /* else they are there already */
 		emit_weights(e, p);
 	emit_move(e, p, &turns);
 	emit_size_of_x(e, p);

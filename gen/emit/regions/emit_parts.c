@@ -40,9 +40,9 @@ static struct emitter part_of(const struct emitter *e, int index)
 	part.model = part.part->model;
 	part.step = e->step->regions.part[index];
 	part.system = &part.step->branch->system;
-	part.own = format("%s_part%d", e->name, index);
-	part.place = format("[%d]", index);
-	part.degree = format("%s_part%d", e->name, first_of_degree(e, index));
+	part.spelled.own = format("%s_part%d", e->name, index);
+	part.spelled.place = format("[%d]", index);
+	part.spelled.degree = format("%s_part%d", e->name, first_of_degree(e, index));
 	part.local = ARRAY(const char *, (size_t)part.system->states);
 	for (int i = 0; i < part.system->states; i++)
 		part.local[i] = e->local[part.part->state[i]];

@@ -311,7 +311,7 @@ void emit_search(const struct emitter *e, const char *ladder)
 	const char *search =
 		format("%s%s", has_guards(e) ? "pl_guards" : "pl_switching", is_compensated(e) ? "_compensated" : "");
 	const char *varied = has_variation(e) ? "_d" : "";
-	begin_macros(e, "search.h", e->own);
+	begin_macros(e, "search.h", e->spelled.own);
 	emit_search_sizes(e);
 	say_macro(e, "STATES", own_states(e));
 	say_macro(e, "ALL", spell(e, "$N_STATES"));
@@ -319,7 +319,7 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "H", spell(e, "$N_H"));
 	say_macro(e, "MAX_EVENTS", functions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
 	say_macro(e, "PLACE(i)", place_in_loop(e));
-	say_macro(e, "PART", e->place);
+	say_macro(e, "PART", e->spelled.place);
 	say_macro(e, "LADDER", ladder);
 	say_macro(e, "SEARCH", has_guards(e) ? "pl_guards" : "pl_switching");
 	say_macro(e, "START", format("%s_start%s", search, varied));
@@ -451,7 +451,7 @@ void emit_lanes_of_regions(const struct emitter *e)
 /* Of the file, or of an instance */
 static const char *table(const struct emitter *e, const char *name)
 {
-	return e->model->params.retuned ? format("s->coeffs.%s", name) : format("%s_%s", e->own, name);
+	return e->model->params.retuned ? format("s->coeffs.%s", name) : format("%s_%s", e->spelled.own, name);
 }
 
 /* What ends a region */

@@ -97,7 +97,7 @@ static struct emitter emitter_of_changes(const struct emitter *e)
 	changes.step = e->step->derivatives->regions;
 	changes.model = changes.step->model;
 	changes.system = &changes.step->branch->system;
-	changes.own = format("%s_d", e->name);
+	changes.spelled.own = format("%s_d", e->name);
 	return changes;
 }
 

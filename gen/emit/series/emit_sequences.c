@@ -22,7 +22,8 @@ const struct emitter *by_series(const struct emitter *e, struct expansion *x)
 	view->step.taylor.expansion = x;
 	view->e = *e;
 	view->e.step = &view->step;
-	view->e.columns = format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
+	view->e.spelled.columns =
+		format(x->columns && !x->alone ? "%s_STATES + %d" : "%s_STATES", e->upper, x->columns);
 	return &view->e;
 }
 

@@ -148,7 +148,7 @@ static void emit_held(const struct emitter *e)
 
 static void emit_derive(const struct emitter *e)
 {
-	const int derived = e->model->spec->derived, given = tunables_of(e->model)->given;
+	const int derived = e->model->spec->tuned.derived, given = tunables_of(e->model)->given;
 	const struct reads reads = reads_of(e->model, derived, e->model->params.derived);
 	open_function(e, "Numbers that follow from params", "static void $n_derive(const double y[], double out[])");
 	for (int k = 0; k < given; k++)
@@ -180,7 +180,7 @@ static void emit_range_checks(const struct emitter *e)
 /* NAME_retune of the params that are given, within their ranges, by that of all */
 static void emit_wrapper(const struct emitter *e)
 {
-	const int derived = e->model->spec->derived;
+	const int derived = e->model->spec->tuned.derived;
 	if (derived)
 		emit_derive(e);
 	say(e, "\nint $n_retune($n_coeffs *c, const double params[$N_PARAMS], double h)\n"

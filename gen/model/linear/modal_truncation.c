@@ -400,8 +400,8 @@ void evaluate_modes(void *context)
 		list = parse_mode_list(b->spec, source_argument(b->request->modes));
 	if (!list.at.source)
 		abandon();
-	if (b->spec->ranges > 0)
-		error(b->spec->range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
+	if (b->spec->states.ranges > 0)
+		error(b->spec->states.range[0].at, NULL, "'modes' leaves no states as written, of which a range is");
 	*wanted = (struct wanted_modes){ list.at, list.count, ARRAY(int, list.count), list.each,
 					 !list.without_static };
 	for (int i = 0; i < list.count; i++) {

@@ -79,7 +79,7 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 		return model;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	if (row->holds_coupling || row->modes) {
-		say_warning(model->request.scheme_at.source ? model->request.scheme_at : spec->name_at,
+		say_warning(model->request.at.scheme.source ? model->request.at.scheme : spec->name_at,
 			    row->modes ? "exact and etdrk4 step differences as states of their own"
 				       : "any other scheme steps differences as states of their own",
 			    "%s keeps coordinates as they are written, and there are rigid-body modes: where they "

@@ -95,7 +95,7 @@ static int stages_of(struct building *b, struct node *node)
 /* The steps that one expansion of fixed order is over */
 static int steps_of_expansion(struct building *b)
 {
-	struct node *over = b->model->request.scheme_over;
+	struct node *over = b->model->request.series.over;
 	const struct scheme_row *row = scheme_row(b->model->scheme);
 	if (!over)
 		return 1;
@@ -112,9 +112,9 @@ void evaluate_truncation(void *context)
 	struct building *b = context;
 	struct model *model = b->model;
 	struct truncation *truncation = &model->truncation;
-	struct place at = b->spec->request.tolerance ? b->spec->request.tolerance->start : model->request.scheme_at;
+	struct place at = b->spec->request.tolerance ? b->spec->request.tolerance->start : model->request.at.scheme;
 	struct node *tolerance = requested_or_written(b, b->request->tolerance, b->spec->request.tolerance, &at);
-	struct node *order = model->request.scheme_order, *substeps = b->spec->request.substeps;
+	struct node *order = model->request.series.order, *substeps = b->spec->request.substeps;
 	const struct scheme_row *row = scheme_row(model->scheme);
 	mpq_init(truncation->tolerance);
 	if (row->stages) {

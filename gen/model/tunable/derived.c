@@ -60,20 +60,20 @@ static bool same_node(const struct node *a, const struct node *b)
 /* That of the same expression, where there is one */
 static struct symbol *derived_symbol(struct spec *spec, struct node *node)
 {
-	for (int k = spec->tunables - spec->derived; k < spec->tunables; k++)
-		if (same_node(spec->tunable[k].symbol->value, node))
-			return spec->tunable[k].symbol;
+	for (int k = spec->tuned.count - spec->tuned.derived; k < spec->tuned.count; k++)
+		if (same_node(spec->tuned.tunable[k].symbol->value, node))
+			return spec->tuned.tunable[k].symbol;
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){ .kind = SYMBOL_PARAM,
-				   .name = format("derived%d", ++spec->derived),
+				   .name = format("derived%d", ++spec->tuned.derived),
 				   .at = node->at,
 				   .value = node,
 				   .used = true,
 				   .tuning.tuned = true,
 				   .tuning.derived = true,
-				   .tuning.number = spec->tunables + 1 };
+				   .tuning.number = spec->tuned.count + 1 };
 	add_symbol(spec, symbol);
-	*MORE(spec->tunable, spec->tunables) = (struct tunable){ node->start, symbol, NULL, NULL };
+	*MORE(spec->tuned.tunable, spec->tuned.count) = (struct tunable){ node->start, symbol, NULL, NULL };
 	return symbol;
 }
 
@@ -151,14 +151,15 @@ void warn_of_unread(const struct model *model)
 	const struct spec *spec = model->spec;
 	unsigned read = 0;
 	each_function(model->spec, add_read, &read);
-	for (int i = 0; i < spec->energies; i++) {
-		const struct energy *e = &spec->energy[i];
+	for (int i = 0; i < spec->lagrange.energies; i++) {
+		const struct energy *e = &spec->lagrange.energy[i];
 		read |= params_read(e->value) | (e->point ? params_read(e->point) : 0);
 	}
-	for (int k = 0; k < spec->tunables - spec->derived && !model->relative; k++)
+	for (int k = 0; k < spec->tuned.count - spec->tuned.derived && !model->relative; k++)
 		if (!(read >> k & 1))
-			say_warning(spec->tunable[k].at, NULL, "tunable '%s' changes nothing that the target computes",
-				    spec->tunable[k].symbol->name);
+			say_warning(spec->tuned.tunable[k].at, NULL,
+				    "tunable '%s' changes nothing that the target computes",
+				    spec->tuned.tunable[k].symbol->name);
 }
 
 /* ---- what cannot be found there ---- */

@@ -59,22 +59,22 @@ static void mark_all_forces(const struct spec *spec, bool *mark)
 const bool *find_factors(struct building *b)
 {
 	const struct spec *spec = b->spec;
-	size_t count = (size_t)spec->tunables;
+	size_t count = (size_t)spec->tuned.count;
 	struct attempt a = { b, rationals(count), ARRAY(bool, count) };
 	bool *given = ARRAY(bool, count);
-	for (int k = 0; k < spec->tunables; k++)
-		param_value(spec->tunable[k].symbol, a.nominal[k]);
+	for (int k = 0; k < spec->tuned.count; k++)
+		param_value(spec->tuned.tunable[k].symbol, a.nominal[k]);
 	for (int i = 0; i < spec->whens; i++)
 		if (spec->when[i].restitution)
 			mark_read(spec->when[i].restitution, given);
-	for (int k = 0; k < spec->tunables; k++)
+	for (int k = 0; k < spec->tuned.count; k++)
 		a.factor[k] = given[k];
 	if (silent_guard(build_attempt, &a))
 		return a.factor;
 	mark_all_forces(spec, given);
-	for (int k = 0; k < spec->tunables; k++)
+	for (int k = 0; k < spec->tuned.count; k++)
 		a.factor[k] = true;
-	for (int k = 0; k < spec->tunables; k++) {
+	for (int k = 0; k < spec->tuned.count; k++) {
 		a.factor[k] = given[k];
 		a.factor[k] = given[k] || !silent_guard(build_attempt, &a);
 	}

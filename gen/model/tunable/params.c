@@ -26,9 +26,9 @@ static bool is_of_tunables(const struct node *node)
 void refuse_what_stays(const struct spec *spec)
 {
 	const char *note = "by another value it would stay: --tunable is for what makes the same model as -D";
-	for (int i = 0; i < spec->initials; i++)
-		if (is_of_tunables(spec->initial[i].value))
-			say_error(spec->initial[i].at, note, "this initial value reads a tunable param");
+	for (int i = 0; i < spec->states.initials; i++)
+		if (is_of_tunables(spec->states.initial[i].value))
+			say_error(spec->states.initial[i].at, note, "this initial value reads a tunable param");
 	if (spec->request.step && is_of_tunables(spec->request.step))
 		say_error(spec->request.step_at, note, "the step reads a tunable param");
 	if (spec->required.needs)
@@ -45,8 +45,8 @@ void spread_tuned(const struct spec *spec)
 int param_of_input(const struct spec *spec, int input)
 {
 	int k = input < spec->count.inputs ? -1 : 0;
-	while (k >= 0 && (spec->tunable[k].symbol->tuning.factor ||
-			  spec->tunable[k].symbol->tuning.acting != input - spec->count.inputs))
+	while (k >= 0 && (spec->tuned.tunable[k].symbol->tuning.factor ||
+			  spec->tuned.tunable[k].symbol->tuning.acting != input - spec->count.inputs))
 		k++;
 	return k;
 }
@@ -66,16 +66,16 @@ unsigned params_read(const struct node *node)
 
 unsigned params_of_tunable(const struct spec *spec, int tunable)
 {
-	const struct symbol *s = spec->tunable[tunable].symbol;
+	const struct symbol *s = spec->tuned.tunable[tunable].symbol;
 	return s->tuning.derived ? params_read(s->value) : 1u << tunable;
 }
 
 struct tuning *list_tunables(const struct model *model)
 {
 	struct tuning *t = NEW(struct tuning);
-	t->params = model->spec->tunables;
-	t->given = t->params - model->spec->derived;
-	t->param = model->spec->tunable;
+	t->params = model->spec->tuned.count;
+	t->given = t->params - model->spec->tuned.derived;
+	t->param = model->spec->tuned.tunable;
 	t->nominal = rationals(t->params);
 	for (int k = 0; k < t->params; k++)
 		param_value(t->param[k].symbol, t->nominal[k]);

@@ -331,12 +331,12 @@ static void check_regions(const struct model *model)
 {
 	check_tuned(model);
 	check_outputs(model);
-	refuse(CAN_TUNABLE, model, model->spec->tunable[0].at);
+	refuse(CAN_TUNABLE, model, model->spec->tuned.tunable[0].at);
 }
 
 static void check_linear(const struct model *model)
 {
-	refuse(CAN_TUNABLE, model, model->spec->tunable[0].at);
+	refuse(CAN_TUNABLE, model, model->spec->tuned.tunable[0].at);
 	for (int i = 0; i < model->outputs; i++) {
 		const struct node *name = model->output[i].left ? first_tuned(model->output[i].value) : NULL;
 		if (name)
@@ -395,7 +395,7 @@ static void find(void *context)
 
 struct model *find_tuning(struct model *model, const struct request *request)
 {
-	if (model->spec->tunables == 0)
+	if (model->spec->tuned.count == 0)
 		return model;
 	struct tuning *t = list_tunables(model);
 	struct elsewhere s = { .model = model, .request = request, .tuning = t, .factor = model->params.factor,

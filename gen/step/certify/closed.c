@@ -41,7 +41,7 @@ static struct closed_form *closed_forms(const struct step *step, struct referenc
 
 static bool fill_row(const struct step *step, const struct closed_form *form, mpq_srcptr t, double *row)
 {
-	struct place at = step->model->request.step_at;
+	struct place at = step->model->request.at.step;
 	bool finite = true;
 	for (int i = 0; i < step->branch->system.states; i++) {
 		row[i] = started_value(form[i].count, form[i].list, t, false, at, "a value of the self-test").value;

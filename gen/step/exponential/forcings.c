@@ -102,7 +102,7 @@ void check_turns(const struct step *step)
 		const struct forcing *forcing = split->forcing[k].forcing;
 		double turn = (fabs(nearest_double(forcing->a)) + nearest_double(forcing->w)) * h;
 		if (!(turn <= LIMIT_WITHIN))
-			error(step->model->request.step_at,
+			error(step->model->request.at.step,
 			      "a shorter step can; with --loads remainder it is a polynomial",
 			      "scheme %s follows loads that turn or grow by at most %d in a step, which that of "
 			      "%s 1/s exceeds", scheme_name(step->model->scheme), LIMIT_WITHIN,

@@ -17,7 +17,7 @@ enum {
 struct place scheme_place(const struct step *step)
 {
 	const struct model *model = step->model;
-	return model->request.scheme_at.source ? model->request.scheme_at : model->spec->name_at;
+	return model->request.at.scheme.source ? model->request.at.scheme : model->spec->name_at;
 }
 
 /* ---- which models have them ---- */
@@ -274,7 +274,7 @@ static void check_changes(const struct step *step)
 	for (int s = 0; s + 1 < system->segments; s++) {
 		mpq_div(steps, system->change[s], model->h);
 		if (mpq_sgn(steps) > 0 && mpz_cmp_ui(mpq_denref(steps), 1) != 0)
-			error(model->request.step_at, "a step of which that time is a multiple, or etdrk4 or taylor",
+			error(model->request.at.step, "a step of which that time is a multiple, or etdrk4 or taylor",
 			      "scheme %s starts anew where a formula in time changes: t = %s is inside a step of %s s",
 			      name_of(step), readable_text(system->change[s]), readable_text(model->h));
 	}

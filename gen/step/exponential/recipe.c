@@ -6,7 +6,7 @@
 _Noreturn void internal_error(const struct step *step, const char *what)
 {
 	const struct model *model = step->model;
-	error(model->request.scheme_at.source ? model->request.scheme_at : model->spec->name_at,
+	error(model->request.at.scheme.source ? model->request.at.scheme : model->spec->name_at,
 	      "this is a fault of plgen, not of the spec", "internal error: the program of scheme %s: %s",
 	      scheme_name(model->scheme), what);
 }

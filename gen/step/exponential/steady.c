@@ -122,7 +122,7 @@ mpfr_t *steady_matrix(const struct model *model, const mpq_t *M, const mpq_t *C,
 	mpfr_t *Phi = reals(cells, ENTRY_BITS), *half = reals(cells, ENTRY_BITS);
 	INTERVAL entry = OVER_BITS(ENTRY_BITS);
 	if (!taylor_enclose(taylor, ENTRY_BITS))
-		error(model->request.step_at, NULL, "the step is too long for the model's fastest mode");
+		error(model->request.at.step, NULL, "the step is too long for the model's fastest mode");
 	for (int i = 0; i < size; i++)
 		for (int j = 0; j < size; j++) {
 			taylor_entry(taylor, i, j, entry);

@@ -118,7 +118,7 @@ static struct coefficient number_of(struct filling *f, bool two_words, enum soug
 	}
 	struct number number = ask(f, by_residues, sought, a, b);
 	if (!round_number(&number, two_words, LIMIT_PRECISION, &c, &isolated))
-		undecided(f->model->request.step_at, what, isolated);
+		undecided(f->model->request.at.step, what, isolated);
 	check_range(f->model, &c, f->responses, f->response, what);
 	return c;
 }
@@ -254,11 +254,11 @@ static void fill_kicks(struct filling *f, struct table *table)
 	while (!round_kicks(f, table, precision)) {
 		precision *= 2;
 		if (precision > LIMIT_PRECISION)
-			undecided(f->model->request.step_at, "a kick of the form kick-drift-kick", true);
+			undecided(f->model->request.at.step, "a kick of the form kick-drift-kick", true);
 	}
 	for (int i = 0; i < system->n * system->n; i++)
 		if (!isfinite(table->kick[i].value) || !isfinite(table->drift[i].value))
-			error(f->model->request.step_at, "--form delta or --form direct may do",
+			error(f->model->request.at.step, "--form delta or --form direct may do",
 			      "a factor of the form kick-drift-kick is beyond the range of %s", target_name());
 }
 
@@ -458,7 +458,7 @@ static void check_forcings(const struct filling *f)
 	for (int l = 0; l < f->system->loads; l++) {
 		const long bits = rational_bits(f->system->load[l].forcing->w) + rational_bits(f->model->h);
 		if (bits > LIMIT_TURNS && load_acts(f->system, &f->system->load[l]))
-			error(f->model->request.step_at, NULL,
+			error(f->model->request.at.step, NULL,
 			      "the frequency of %s times the step is beyond the limit of 2^%d for models of more than "
 			      "%d states",
 			      column_text(&f->system->load[l], 0), LIMIT_TURNS, LIMIT_RESIDUE_STATES);

@@ -45,7 +45,7 @@ int poles_of(const struct model *model, const struct resolvent *resolvent, struc
 	struct spectrum *spectrum = resolvent_spectrum(resolvent);
 	int count = 0;
 	if (!spectrum_refine(spectrum, REPORT_BITS))
-		error(model->request.step_at, "do two parameters differ by less than their rounding?",
+		error(model->request.at.step, "do two parameters differ by less than their rounding?",
 		      "two poles are too close to each other to be told apart");
 	*report = ARRAY(struct pole_report, spectrum->D.length);
 	if (spectrum->zero)

@@ -54,7 +54,7 @@ static struct coefficient *step_of_load(const struct step *step, const struct lo
 	struct coefficient *cell = ARRAY(struct coefficient, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++) {
 		struct response *response = response_of_load_state(load, i / n, i % n);
-		cell[i] = response_value(response, model->h, true, model->request.step_at, column_text(load, i / n));
+		cell[i] = response_value(response, model->h, true, model->request.at.step, column_text(load, i / n));
 	}
 	return cell;
 }

@@ -20,7 +20,7 @@ void check_pole_size(const struct model *model, const struct resolvent *resolven
 	}
 	long step = rational_bits(model->h);
 	if (largest + step > LIMIT_PRECISION)
-		error(model->request.step_at, NULL,
+		error(model->request.at.step, NULL,
 		      "the largest pole, about 2^%ld 1/s, times the step is beyond the limit of 2^%d", largest,
 		      LIMIT_PRECISION);
 }
@@ -205,7 +205,7 @@ void check_range(const struct model *model, const struct coefficient *c, int cou
 	if (isfinite(c->value) || count == 0)
 		return;
 	struct culprit pole = find_culprit(list[0].response, nearest_double(model->h));
-	error(model->request.step_at, pole.grows ? "a smaller step would do" : NULL,
+	error(model->request.at.step, pole.grows ? "a smaller step would do" : NULL,
 	      "%s is beyond the range of %s: pole %s, h = %s s", what, target_name(), pole_of(&pole),
 	      readable_text(model->h));
 }

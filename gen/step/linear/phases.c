@@ -23,7 +23,7 @@ static void divide_by_unit(mpq_srcptr q, enum phase_unit unit, mpfi_ptr x)
 
 static _Noreturn void undecided(const struct step *step, mpq_srcptr q, enum phase_unit unit, long precision)
 {
-	error(step->model->request.step_at, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
+	error(step->model->request.at.step, NULL, "%s / %s is not decided with %ld bits", readable_text(q),
 	      unit == TURN ? "(2*pi)" : "ln 2", precision);
 }
 

@@ -322,7 +322,7 @@ static void fill_term(const struct step *step, struct row *row, struct turn *tur
 		precision *= 2;
 	bool decided = precision <= LIMIT_PRECISION;
 	if (!decided || !isfinite(c->value))
-		error(step->model->request.step_at, "--refresh 1 may do",
+		error(step->model->request.at.step, "--refresh 1 may do",
 		      "what a load adds so many steps after a refresh is %s",
 		      decided ? format("beyond the range of %s", target_name())
 			      : format("not decided with %d bits", LIMIT_PRECISION));

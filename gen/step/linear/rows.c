@@ -103,7 +103,7 @@ static struct share share_of_load(const struct step *step, const struct output *
  * finite leaves the statement. */
 static struct coefficient value_of(const struct step *step, const struct share *share, int steps, bool two_words)
 {
-	struct place at = step->model->request.step_at;
+	struct place at = step->model->request.at.step;
 	struct coefficient c;
 	int count = share->count < steps ? share->count : steps;
 	RATIONAL t = RATIO(steps, 1);

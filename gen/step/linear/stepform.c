@@ -134,8 +134,8 @@ void leave_form(struct step *step, const char *why)
 	const struct model *model = step->model;
 	const char *form = step_form_name(model->request.form);
 	if (model->request.again.trial)
-		error(model->request.form_at, NULL, "the form %s cannot step this model: %s", form, why);
-	stand_aside(model->request.form_at, format("--form %s", form), why);
+		error(model->request.at.form, NULL, "the form %s cannot step this model: %s", form, why);
+	stand_aside(model->request.at.form, format("--form %s", form), why);
 	step->plain = model_copy(model);
 	step->plain->request.form = FORM_AUTO;
 	abandon();

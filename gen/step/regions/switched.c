@@ -123,7 +123,7 @@ static void halve_region(struct step *step, int k)
 {
 	step->branch[k].halvings = series_halvings(step, k);
 	if (step->branch[k].halvings > LIMIT_PIECES)
-		error(step->model->request.step_at, "a smaller step would do",
+		error(step->model->request.at.step, "a smaller step would do",
 		      "the largest pole times h is above 2^%d: too short pieces of a step to look for crossings in",
 		      LIMIT_PIECES);
 }

@@ -26,7 +26,7 @@ static void build_once(void *context)
 	request.again.varied = s->name;
 	request.again.value = s->value;
 	struct spec *spec = parse_spec(s->model->spec->source);
-	spec->adopted = true;                   /* units have been looked at */
+	spec->units.adopted = true;             /* units have been looked at */
 	s->found = model_build(spec, &request);
 	if (!s->found)
 		abandon();
