@@ -71,7 +71,8 @@ struct list {
 
 static _Noreturn void wrong_at(const struct list *l, const char *at, const char *message, const char *note)
 {
-	say_at((struct place){ "<command line>", 1, l->text, strlen(l->text), (size_t)(at - l->text) }, "error", message);
+	const size_t column = (size_t)(at - l->text);
+	say_at((struct place){ "<command line>", 1, l->text, strlen(l->text), column }, "error", message);
 	fprintf(stderr, "note: %s\n", note);
 	exit(WRONG_USAGE);
 }
