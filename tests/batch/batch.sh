@@ -391,16 +391,13 @@ refused() {
 refused models/gear1.spec 'where a step may have an event the search takes it'
 refused models/pendulum.spec 'the remainder is not linear in the state'
 refused tests/peaks/peaks.spec 'peaks are looked for inside its steps'
-awk '/^```c$/ { inside = 1; text = ""; next }
-    /^```$/ { if (inside && text ~ /device\.c: /) printf "%s", text; inside = 0 }
-    inside { text = text $0 "\n" }' "$root/doc/api.md" >device.c
-name='the program of doc/api.md, by OpenCL: the bits of the batch'
+name='doc/device.c, by OpenCL: the bits of the batch'
 if ! ${CC:-cc} -include CL/cl.h -DCL_TARGET_OPENCL_VERSION=120 linked.c -lOpenCL -o linked 2>/dev/null; then
     skip "$name" 'there is no OpenCL to link with: ocl-icd-opencl-dev'
 else
     "$plgen" --batch -o oscillator_pl.c "$root/models/oscillator.spec" &&
         "$plgen" --target opencl -o oscillator_pl.cl "$root/models/oscillator.spec" &&
-        ${CC:-cc} -std=c99 -O1 -ffp-contract=off -I"$root/runtime" -I. device.c oscillator_pl.c "$archive" \
+        ${CC:-cc} -std=c99 -O1 -ffp-contract=off -I"$root/runtime" -I. "$root/doc/device.c" oscillator_pl.c "$archive" \
             -lOpenCL -lm -o device && POCL_CACHE_DIR=$PWD XDG_CACHE_HOME=$PWD ./device >log 2>&1
     status=$?
     if [ $status -eq 2 ]; then
