@@ -430,25 +430,6 @@ static void print_refusals(void)
 			print_three(r);
 }
 
-/* What the table says of what no cell is about, an item for each that is asked */
-static void print_asides(void)
-{
-	puts("\n## What stands aside, and what is not there\n");
-	for (int i = 0; i < TABLE; i++) {
-		char item[8 * LINE];
-		bool seen = false;
-		for (int c = 0; c < count; c++)
-			seen = seen || *fact_named(&capability[c].is, table[i].asked);
-		if (table[i].reason || seen)
-			continue;
-		message_of(&(struct row){ NULL, table[i].words, "" }, item, sizeof item);
-		for (int k = i + 1; k < TABLE && table[k].reason; k++)
-			snprintf(item + strlen(item), sizeof item - strlen(item), "%s%s", k > i + 1 ? "; " : "",
-				 table[k].reason);
-		print_words(item, printf("- "));
-	}
-}
-
 static void print_table(void)
 {
 	puts("<!-- SPDX-License-Identifier: GPL-3.0-or-later -->\n"
@@ -457,11 +438,11 @@ static void print_table(void)
 	     "each. `+`: they work. A number: plgen refuses them with that message below, where N is a number and X\n"
 	     "a name. Blank: one excludes the other. Every `+` is tested: a covering array has every pair, of the\n"
 	     "first ones every triple, and `step`, `run`, `jump`, `at`, `set` at odd times, copies and `--rhs` agree\n"
-	     "with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`. The page is made by\n"
+	     "with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`. An option that only makes\n"
+	     "a step faster stands aside with a note that says why. The page is made by\n"
 	     "`tests/combinations/combinations.sh` from `gen/model/capability.def`, as are plgen's messages.\n");
 	print_pairs_table();
 	print_refusals();
-	print_asides();
 	puts("\n## A new capability\n\n"
 	     "A row for each refusal that it brings in `gen/model/capability.def`, a line in\n"
 	     "`tests/combinations/capabilities.list`, and what it adds to a spec or the options in `write_spec` of\n"
