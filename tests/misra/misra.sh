@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What the MISRA C 2012 addon of cppcheck finds in generated code or in the runtime, whose headers with algorithms are
-# read where models include them: of each rule no more than doc/firmware.md has in its table, and no rule that is not
+# read where models include them: of each rule no more than doc/firmware/misra.csv has, and no rule that is not
 # there. A case for each file, once it has been read, and for each rule.
 #
 #     misra.sh PLGEN SOURCE_ROOT models | runtime
-#     misra.sh PLGEN SOURCE_ROOT --table      prints the rows for that page, a rule a line: rule, in the models, in the
+#     misra.sh PLGEN SOURCE_ROOT --table      prints what that table says, a rule a line: rule, in the models, in the
 #                                             runtime
 set -u
 plgen=$1
@@ -71,18 +71,17 @@ if [ "$part" = --table ]; then
 	exit 0
 fi
 
-# The page: |15.6|required|in the models|in the runtime|why|
-awk -F'|' '$2 ~ /^[0-9]+\.[0-9]+$/ { gsub(/ /, "", $2); print $2, $4 + 0, $5 + 0 }' \
-	"$root/doc/firmware.md" >allowed
+# The table: rule,kind,in the models,in the runtime,why
+awk -F, 'NR > 1 { print $1, $3 + 0, $4 + 0 }' "$root/doc/firmware/misra.csv" >allowed
 column=2
 [ "$part" = models ] || column=3
 while read -r rule models runtime; do
 	times=$models
 	[ "$part" = models ] || times=$runtime
 	most=$(awk -v rule="$rule" -v column=$column '$1 "" == rule "" { print $column }' allowed)
-	echo "rule $rule: $times, on the page ${most:-nothing}" >log
+	echo "rule $rule: $times, in the table ${most:-nothing}" >log
 	[ "$times" -le "${most:--1}" ]
-	result $? "$part: rule $rule, $times times, not more than doc/firmware.md says"
+	result $? "$part: rule $rule, $times times, not more than doc/firmware/misra.csv says"
 done <found
 [ "$(wc -l <found)" -gt 15 ] || result 1 "$part: only $(wc -l <found) rules were found"
 tap_end
