@@ -66,6 +66,7 @@ struct start {
 	int n, rows;                /* coordinates, constraints */
 	mpq_t *value;               /* per state */
 	bool *named;                /* per state: init says it */
+	mpq_srcptr t;               /* NULL: loads are left out */
 	struct form **slope[LEVELS]; /* [coordinate * rows + constraint]: of by[level], by q or by q' */
 	double *g, *G;              /* there: [constraint], [constraint * n + coordinate] */
 	double *S;                  /* G W G^T, its rows and columns scaled, then its factors */
@@ -76,7 +77,7 @@ struct start {
 static const struct form *held_form(const struct start *w, int row, int level)
 {
 	const struct form *held = rows_of(w->b)->constraint[row].by[level];
-	return held ? held : form_number(0);
+	return !held ? form_number(0) : w->t ? held : terms_of_kinds(held, ~(1u << BASIS_FORCING));
 }
 
 static int state_at(const struct start *w, int coord, int level)
@@ -117,6 +118,8 @@ static void evaluate(struct start *w, int level)
 {
 	struct jacobian j = { .b = w->b, .state = w->value };
 	mpq_init(j.t);
+	if (w->t)
+		mpq_set(j.t, w->t);
 	struct fixing *fixing = ARRAY(struct fixing, w->b->model->system.states + 1);
 	struct point *point = point_new(&w->b->collector, jacobian_point(&j, fixing), fixing);
 	point_at_values(point);
@@ -430,32 +433,62 @@ static void name_given(struct start *w)
 	}
 }
 
-static void meet_constraints(struct building *b)
+static struct start start_from(struct building *b, mpq_t *state, mpq_srcptr t)
 {
 	const struct model *model = b->model;
 	const int n = model->n, m = b->spec->count.multipliers, states = model->system.states;
-	struct start w = { .b = b, .n = n, .rows = m, .value = rationals(states), .named = ARRAY(bool, states),
+	struct start w = { .b = b, .n = n, .rows = m, .value = rationals(states), .named = ARRAY(bool, states), .t = t,
 			   .g = ARRAY(double, m), .G = ARRAY(double, m * n), .S = ARRAY(double, m * m),
 			   .scale = ARRAY(double, m), .order = ARRAY(int, m) };
-	mpq_t *given = rationals(states);
-	int missed = 0;
+	set_values(&w, state);
+	return w;
+}
+
+/* Positions, then velocities; returns what the first constraint that is not met misses, *missed */
+static double meet_levels(struct start *w, int *missed)
+{
+	mpq_t *given = rationals(w->b->model->system.states);
 	double miss = 0;
-	name_given(&w);
-	set_values(&w, model->initial);
 	for (int level = 0; level < LEVELS; level++) {
-		find_slopes(&w, level);
-		for (int i = 0; i < states; i++)
-			mpq_set(given[i], w.value[i]);
-		evaluate(&w, level);
-		miss = miss > 1e-12 ? miss : largest_miss(&w, &missed);
-		if (!is_met(&w, level, given))
-			report_unmet(&w, level, given);
+		find_slopes(w, level);
+		for (int i = 0; i < w->b->model->system.states; i++)
+			mpq_set(given[i], w->value[i]);
+		evaluate(w, level);
+		miss = miss > 1e-12 ? miss : largest_miss(w, missed);
+		if (!is_met(w, level, given))
+			report_unmet(w, level, given);
 	}
+	return miss;
+}
+
+static void take_moved(const struct start *w, mpq_t *state)
+{
+	for (int i = 0; i < w->b->model->system.states; i++)
+		if (is_moved(state[i], w->value[i], 1e-18)) /* what is 0 stays that */
+			mpq_set(state[i], w->value[i]);
+}
+
+static void meet_constraints(struct building *b)
+{
+	mpq_t *initial = b->model->initial;
+	RATIONAL zero = ZERO;
+	struct start w = start_from(b, initial, zero);
+	int missed = 0;
+	name_given(&w);
+	const double miss = meet_levels(&w, &missed);
 	check_independent(&w);
-	report_moves(&w, model->initial, missed, miss);
-	for (int i = 0; i < states; i++)
-		if (is_moved(model->initial[i], w.value[i], 1e-18)) /* what is 0 stays that */
-			mpq_set(model->initial[i], w.value[i]);
+	report_moves(&w, initial, missed, miss);
+	take_moved(&w, initial);
+}
+
+void meet_constraints_near(struct building *b, mpq_t *state, const bool *named, mpq_srcptr t)
+{
+	struct start w = start_from(b, state, t);
+	int missed = 0;
+	for (int i = 0; named && i < b->model->system.states; i++)
+		w.named[i] = named[i];
+	meet_levels(&w, &missed);
+	take_moved(&w, state);
 }
 
 /* The projection knows no samples. */

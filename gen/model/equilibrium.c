@@ -1,115 +1,14 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Where a model is linearised: an equilibrium by Newton's method, whose directions are found in double and whose
- * residuals are rationals, so that each iteration gains the digits of a double; the slopes of equations there. */
+ * residuals are rationals, so that each iteration gains the digits of a double. */
 #include "linearise.h"
+#include "state_mass.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { BITS = 256, MOST_ITERATIONS = 80 };
-
-/* ---- the point ---- */
-
-static struct fixing *add_fixing(struct linearising *l, const struct symbol *symbol, int index, int order)
-{
-	struct fixing *f = MORE(l->fixing, l->fixings);
-	*f = (struct fixing){ .at = l->b->spec->name_at, .symbol = symbol, .coord = index, .order = order };
-	mpq_init(f->value);
-	f->form = form_constant(f->value);
-	return f;
-}
-
-static int state_order(const struct linearising *l, int state)
-{
-	return state >= l->n;
-}
-
-/* The first `states` fixings are the states, the next n the highest derivatives. */
-void list_fixings(struct linearising *l)
-{
-	const struct model *model = l->b->model;
-	for (int i = 0; i < l->states; i++) {
-		const int coord = model->system.coord[i];
-		add_fixing(l, model->frame.coord[coord], coord, state_order(l, i));
-	}
-	for (int i = 0; i < l->n; i++)
-		add_fixing(l, model->frame.coord[i], i, model->system.velocity[i] < 0 ? 1 : 2);
-	for (int i = 0; i < l->inputs; i++)
-		for (int order = 0; order < 2; order++)
-			add_fixing(l, l->input[i], i, order);
-	add_fixing(l, NULL, 0, 0);
-}
-
-struct point *point_of(struct linearising *l)
-{
-	for (int i = 0; i < l->states; i++)
-		mpq_set(l->fixing[i].value, l->state[i]);
-	struct point *point = point_new(&l->b->collector, l->fixings, l->fixing);
-	point_at_values(point);
-	return point;
-}
-
-void value_at(struct linearising *l, struct point *point, const struct form *form, mpq_ptr value)
-{
-	struct form *there = form_at(point, form);
-	if (!is_constant(there))
-		error(l->b->spec->name_at, NULL, "a term has no value at the point where the model is linearised");
-	constant_value(&l->b->collector, there, value);
-	if (!is_constant(form))
-		form_free(there);
-}
-
-void find_residuals(struct linearising *l)
-{
-	struct point *point;
-	for (int i = 0; i < l->n; i++)
-		mpq_set_ui(l->fixing[l->states + i].value, 0, 1);
-	point = point_of(l);
-	for (int i = 0; i < l->n; i++)
-		value_at(l, point, l->residual[i], l->F[i]);
-	point_free(point);
-}
-
-bool is_equilibrium(const struct linearising *l)
-{
-	for (int i = 0; i < l->n; i++)
-		if (mpq_sgn(l->F[i]) != 0)
-			return false;
-	return true;
-}
-
-void find_highest(struct linearising *l)
-{
-	const struct linear *system = &l->b->model->system;
-	mpq_t *inverse = inverse_of_leading(system);
-	for (int i = 0; i < l->n; i++) {
-		mpq_ptr sum = l->fixing[l->states + i].value;
-		mpq_set_ui(sum, 0, 1);
-		for (int k = 0; k < l->n; k++)
-			rational_addmul(sum, inverse[i * l->n + k], l->F[k]);
-		mpq_neg(sum, sum);
-	}
-}
-
-/* ---- derivatives ---- */
-
-void slopes_at(struct linearising *l, int count, const struct form *const *form, int fixing, mpq_t *slope)
-{
-	const struct fixing *f = &l->fixing[fixing];
-	struct form **by = form_derivatives(&l->b->collector, count, form, f->symbol->kind == SYMBOL_INPUT, f->coord,
-					    f->order);
-	struct point *point = point_of(l);
-	for (int i = 0; i < count; i++)
-		value_at(l, point, by[i], slope[i]);
-	point_free(point);
-	if (!l->looks)
-		return;
-	struct point *always = point_new(&l->b->collector, l->fixings - 1, l->fixing);
-	point_at_values(always);
-	for (int i = 0; i < count; i++)
-		l->varies = l->varies || !is_constant(form_at(always, by[i]));
-}
 
 /* ---- Newton's method ---- */
 
@@ -172,7 +71,7 @@ static void solve_partly(int n, double *A, double *x)
 static double size_of_residuals(const struct linearising *l)
 {
 	double size = 0;
-	for (int i = 0; i < l->n; i++)
+	for (int i = 0; i < l->rows; i++)
 		size = fmax(size, fabs(mpq_get_d(l->F[i])));
 	return size;
 }
@@ -190,32 +89,41 @@ static double left_of(int n, const double *K, const double *x)
 	return largest;
 }
 
-/* Where stiffness does not hold the forces the model falls: along its acceleration, until something holds it. */
+/* Where stiffness does not hold the forces the model falls: along its acceleration, until something holds it. Its
+ * multipliers are those of the motion. */
 static void fall(struct linearising *l, double *direction)
 {
 	double largest = 0;
-	find_highest(l);
+	const bool solved = solve_highest(l, true);
 	for (int i = 0; i < l->n; i++) {
-		direction[i] = mpq_get_d(l->fixing[l->states + i].value);
+		mpq_ptr highest = l->fixing[l->states + i].value;
+		direction[i] = solved ? mpq_get_d(highest) : -mpq_get_d(l->F[i]);
 		largest = fmax(largest, fabs(direction[i]));
+		mpq_set_ui(highest, 0, 1);
 	}
-	for (int i = 0; i < l->n; i++)
-		direction[i] *= largest > 0 ? l->fall / largest : 0;
+	for (int i = 0; i < l->rows; i++)
+		direction[i] = i >= l->n ? 0 : largest > 0 ? direction[i] * l->fall / largest : 0;
 	l->fall *= 2;
 }
 
-/* Of the residuals by each coordinate, once for all points */
+/* Of the residuals by each unknown, once for all points. A velocity constraint leaves positions that are reached by
+ * velocities along it, so what it holds is derived by those. */
 static void derive_residuals(struct linearising *l)
 {
-	l->slope = ARRAY(struct form **, l->n);
-	for (int j = 0; j < l->n; j++)
-		l->slope[j] = form_derivatives(&l->b->collector, l->n, l->residual, false, l->fixing[j].coord, 0);
+	l->slope = ARRAY(struct form **, l->rows);
+	for (int j = 0; j < l->rows; j++) {
+		struct form **by = residuals_by(l, j < l->n ? j : l->states + j);
+		l->slope[j] = ARRAY(struct form *, l->rows);
+		for (int i = 0; i < l->rows; i++)
+			l->slope[j][i] = i < l->n || j >= l->n || constraint_of(l, i)->by[0]
+						 ? by[i] : residuals_by(l, l->b->model->system.velocity[j])[i];
+	}
 }
 
 /* K, and -F behind it */
 static double *stiffness_at(struct linearising *l)
 {
-	const int n = l->n;
+	const int n = l->rows;
 	double *K = ARRAY(double, n * (n + 1));
 	struct point *point = point_of(l);
 	RATIONAL slope = ZERO;
@@ -233,7 +141,7 @@ static double *stiffness_at(struct linearising *l)
 /* Newton's direction by a matrix of stiffness, and -F behind it; false: pivots determine only a part of it */
 static bool direction_by(const struct linearising *l, const double *K, double *direction)
 {
-	const int n = l->n;
+	const int n = l->rows;
 	SCRATCH double *work = ARRAY(double, n * (n + 1));
 	memcpy(work, K, sizeof *K * (size_t)(n * (n + 1)));
 	solve_partly(n, work, direction);
@@ -252,7 +160,7 @@ static double largest_of_vector(int n, const double *x)
  * point, which does not depend on units of equations; where it has none by the equations themselves */
 static double distance(const struct linearising *l, double *K, bool solved, double *direction)
 {
-	const int n = l->n;
+	const int n = l->rows;
 	for (int i = 0; i < n; i++)
 		K[i * (n + 1) + n] = -mpq_get_d(l->F[i]);
 	if (!solved)
@@ -266,11 +174,11 @@ static void move(struct linearising *l, mpq_t *from, const double *direction, do
 {
 	REAL sum = WITH_BITS(BITS);
 	RATIONAL change = ZERO;
-	for (int i = 0; i < l->n; i++) {
+	for (int i = 0; i < l->rows; i++) {
 		mpq_set_d(change, part * direction[i]);
 		mpq_add(change, change, from[i]);
 		mpfr_set_q(sum, change, MPFR_RNDN);
-		mpfr_get_q(l->state[i], sum);
+		mpfr_get_q(unknown_of(l, i), sum);
 	}
 	find_residuals(l);
 }
@@ -295,16 +203,16 @@ static void round_decimal(mpq_ptr value)
 /* Where a value of 15 digits is an equilibrium exactly, it is meant: 0, -0.0327. */
 static void take_short(struct linearising *l)
 {
-	mpq_t *kept = rationals((size_t)l->n);
-	for (int i = 0; i < l->n; i++) {
-		mpq_set(kept[i], l->state[i]);
-		round_decimal(l->state[i]);
+	mpq_t *kept = rationals((size_t)l->rows);
+	for (int i = 0; i < l->rows; i++) {
+		mpq_set(kept[i], unknown_of(l, i));
+		round_decimal(unknown_of(l, i));
 	}
 	find_residuals(l);
 	if (is_equilibrium(l))
 		return;
-	for (int i = 0; i < l->n; i++)
-		mpq_set(l->state[i], kept[i]);
+	for (int i = 0; i < l->rows; i++)
+		mpq_set(unknown_of(l, i), kept[i]);
 	find_residuals(l);
 }
 
@@ -354,8 +262,8 @@ static void move_back(struct linearising *l)
 /* Steps are halved while they do not bring the equations closer to 0. */
 void find_equilibrium(struct linearising *l)
 {
-	SCRATCH double *direction = ARRAY(double, l->n), *next = ARRAY(double, l->n);
-	RATIONALS *from = rationals((size_t)l->n);
+	SCRATCH double *direction = ARRAY(double, l->rows), *next = ARRAY(double, l->rows);
+	RATIONALS *from = rationals((size_t)l->rows);
 	double scale = 0, step = 0;
 	for (int i = l->n; i < l->states; i++)
 		mpq_set_ui(l->state[i], 0, 1);
@@ -365,14 +273,14 @@ void find_equilibrium(struct linearising *l)
 	for (int k = 0; k < MOST_ITERATIONS && !is_equilibrium(l); k++) {
 		SCRATCH double *K = stiffness_at(l);
 		const bool solved = direction_by(l, K, direction);
-		const double before = solved ? largest_of_vector(l->n, direction) : size_of_residuals(l);
+		const double before = solved ? largest_of_vector(l->rows, direction) : size_of_residuals(l);
 		if (!solved)
 			fall(l, direction);
-		step = largest_of_vector(l->n, direction);
+		step = largest_of_vector(l->rows, direction);
 		scale = 0;
-		for (int i = 0; i < l->n; i++) {
-			mpq_set(from[i], l->state[i]);
-			scale = fmax(scale, fabs(mpq_get_d(l->state[i])));
+		for (int i = 0; i < l->rows; i++) {
+			mpq_set(from[i], unknown_of(l, i));
+			scale = fmax(scale, fabs(mpq_get_d(unknown_of(l, i))));
 		}
 		if (step <= 1e-60 * scale || (step == 0 && scale == 0))
 			break;
@@ -413,13 +321,14 @@ static int null_space(int n, double *A, double *direction)
 	return count;
 }
 
-/* On the straight way between both all are equilibria too: the model is free to move there. */
+/* On the straight way between both all are equilibria too, with the multipliers there: the model is free to move. */
 static bool is_known(struct linearising *l, const struct equilibrium *other)
 {
-	mpq_t *found = rationals((size_t)l->n);
+	mpq_t *found = rationals((size_t)l->rows);
 	double apart = 0, worst = 0;
+	for (int i = 0; i < l->rows; i++)
+		mpq_set(found[i], unknown_of(l, i));
 	for (int i = 0; i < l->n; i++) {
-		mpq_set(found[i], l->state[i]);
 		mpq_sub(l->state[i], l->state[i], other->state[i]);
 		apart = fmax(apart, fabs(mpq_get_d(l->state[i])));
 	}
@@ -431,11 +340,13 @@ static bool is_known(struct linearising *l, const struct equilibrium *other)
 			mpq_mul(l->state[i], l->state[i], weight);
 			mpq_add(l->state[i], l->state[i], other->state[i]);
 		}
+		if (l->held > 0)
+			solve_highest(l, true);
 		find_residuals(l);
 		worst = fmax(worst, size_of_residuals(l));
 	}
-	for (int i = 0; i < l->n; i++)
-		mpq_set(l->state[i], found[i]);
+	for (int i = 0; i < l->rows; i++)
+		mpq_set(unknown_of(l, i), found[i]);
 	return apart < 1e-9 || worst < 1e-9 * l->scale;
 }
 
@@ -452,11 +363,32 @@ static void start_at(struct linearising *l, int k)
 		mpq_set_d(way, k ? 6.283185307179586 * (part - 0.5) : 0);
 		mpq_add(l->state[i], l->b->model->initial[i], way);
 	}
+	for (int i = l->n; i < l->rows; i++)
+		mpq_set_ui(unknown_of(l, i), 0, 1);
 }
 
+/* A start is brought onto the constraints, where they are near. */
 static void find_one(void *context)
 {
-	find_equilibrium(context);
+	struct linearising *l = context;
+	if (l->held > 0)
+		meet_constraints_near(l->b, l->state, NULL, NULL);
+	find_equilibrium(l);
+}
+
+/* What coordinates have of the directions along which nothing holds them and no constraint keeps them; the largest
+ * entry 1 */
+static void find_free(struct linearising *l, struct equilibrium *found)
+{
+	double *free = ARRAY(double, l->rows * l->rows);
+	const int count = null_space(l->rows, stiffness_at(l), free);
+	found->free = ARRAY(double, l->n * l->rows);
+	for (int k = 0; k < count; k++) {
+		const double *from = free + k * l->rows, largest = largest_of_vector(l->n, from);
+		for (int i = 0; i < l->n && largest > 1e-9; i++)
+			found->free[found->directions * l->n + i] = from[i] / largest;
+		found->directions += largest > 1e-9;
+	}
 }
 
 void find_equilibria(struct linearising *l)
@@ -475,10 +407,10 @@ void find_equilibria(struct linearising *l)
 		if (known)
 			continue;
 		struct equilibrium *found = MORE(e->equilibrium, e->equilibria);
-		*found = (struct equilibrium){ .state = rationals((size_t)l->n), .free = ARRAY(double, l->n * l->n) };
+		*found = (struct equilibrium){ .state = rationals((size_t)l->n) };
 		for (int i = 0; i < l->n; i++)
 			mpq_set(found->state[i], l->state[i]);
-		found->directions = null_space(l->n, stiffness_at(l), found->free);
+		find_free(l, found);
 	}
 }
 
@@ -487,13 +419,14 @@ void find_equilibria(struct linearising *l)
 /* Any values of coordinates, velocities and highest derivatives: multiples of the golden ratio, less whole numbers */
 static void start_anywhere(struct linearising *l, int which)
 {
-	for (int i = 0; i < l->states + l->n; i++) {
-		const double part = (which * (l->states + l->n) + i + 1) * 0.6180339887498949;
+	for (int i = 0; i < l->states + l->rows; i++) {
+		const double part = (which * (l->states + l->rows) + i + 1) * 0.6180339887498949;
 		mpq_set_d(i < l->states ? l->state[i] : l->fixing[i].value, part - floor(part) + 0.1);
 	}
 }
 
-/* dF/dq d = 0 at a few points, in general position: A is the sum of K^T K at these, d its null space */
+/* dF/dq d = 0, and constraints keep d, at a few points, in general position: A is the sum of K^T K at these, d its
+ * null space */
 void find_free_directions(struct linearising *l)
 {
 	enum { POINTS = 3 };
@@ -506,52 +439,9 @@ void find_free_directions(struct linearising *l)
 		const double *K = stiffness_at(l);
 		for (int i = 0; i < n; i++)
 			for (int j = 0; j < n; j++)
-				for (int k = 0; k < n; k++)
-					A[i * wide + j] += K[k * wide + i] * K[k * wide + j];
+				for (int k = 0; k < l->rows; k++)
+					A[i * wide + j] += K[k * (l->rows + 1) + i] * K[k * (l->rows + 1) + j];
 	}
 	e->directions = null_space(n, A, free);
 	e->free = free;
-}
-
-/* ---- kinks ---- */
-
-static double largest_of(int count, const mpq_t *value)
-{
-	double largest = 0;
-	for (int i = 0; i < count; i++)
-		largest = fmax(largest, fabs(mpq_get_d(value[i])));
-	return largest;
-}
-
-/* Of all equations by one state, a hair beside it */
-static void slopes_beside(struct linearising *l, int state, mpq_srcptr hair, mpq_t *slope)
-{
-	mpq_add(l->state[state], l->state[state], hair);
-	slopes_at(l, l->n, l->residual, state, slope);
-	mpq_sub(l->state[state], l->state[state], hair);
-}
-
-void check_kinks(struct linearising *l)
-{
-	enum { HAIR = 80 };         /* of 2^-HAIR */
-	const int n = l->n;
-	mpq_t *here = rationals((size_t)(n * l->states)), *there = rationals((size_t)n);
-	RATIONAL hair = ZERO, difference = ZERO;
-	for (int k = 0; k < l->states; k++)
-		slopes_at(l, n, l->residual, k, here + k * n);
-	const double least = 1e-12 * largest_of(n * l->states, here);
-	for (int k = 0; k < 2 * l->states; k++) {
-		const int state = k / 2;
-		mpq_set_si(hair, k % 2 ? -1 : 1, 1);
-		mpq_div_2exp(hair, hair, HAIR);
-		slopes_beside(l, state, hair, there);
-		for (int i = 0; i < n; i++) {
-			mpq_sub(difference, there[i], here[state * n + i]);
-			if (fabs(mpq_get_d(difference)) > least)
-				error(l->b->spec->name_at, "--at with a value on one side of it takes that side",
-				      "at %s = %.6g the slope of an equation differs between the sides: it has no "
-				      "linear equation there", l->b->model->names.state[state],
-				      mpq_get_d(l->state[state]));
-		}
-	}
 }

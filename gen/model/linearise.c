@@ -11,6 +11,7 @@
 #include "checks.h"
 #include "linearise.h"
 #include "reads.h"
+#include "state_mass.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
@@ -53,6 +54,20 @@ static mpq_ptr time_of(const struct linearising *l)
 	return l->fixing[l->fixings - 1].value;
 }
 
+/* Onto the constraints: what was not given first. What was given and is moved all the same is warned of. */
+static void meet_constraints_at(struct linearising *l, const struct source *source, const bool *given)
+{
+	mpq_t *before = rationals_copied((size_t)l->states, (const mpq_t *)l->state);
+	meet_constraints_near(l->b, l->state, given, l->timed ? time_of(l) : NULL);
+	for (int i = 0; i < l->states; i++) {
+		const double from = mpq_get_d(before[i]), to = mpq_get_d(l->state[i]);
+		if (given[i] && fabs(to - from) > 1e-9 * fmax(1, fabs(from)))
+			say_warning((struct place){ source, 0 }, NULL,
+				    "no state near these values meets the constraints: %s moved from %.6g to %.6g",
+				    l->b->model->names.state[i], from, to);
+	}
+}
+
 /* NAME=EXPR,... in `at`; returns how many */
 static int take_values(struct linearising *l, const char *at)
 {
@@ -79,6 +94,8 @@ static int take_values(struct linearising *l, const char *at)
 	} while (*text);
 	l->timed = given[l->states];
 	l->fixing[l->fixings - 1].form = form_constant(time_of(l));
+	if (l->held > 0 && !(l->timed && count == 1))
+		meet_constraints_at(l, source, given);
 	return count;
 }
 
@@ -90,6 +107,17 @@ static const char *plain_name(const char *name)
 	char *text = format("%s", name);
 	for (char *c = text; *c; c++)
 		*c = *c == '.' ? '_' : *c;
+	return text;
+}
+
+/* v[1], of a vector that is no coordinate, momentum(x), x'': v_1_, momentum_x_, x_dot_dot */
+static const char *output_name(const char *name)
+{
+	const size_t length = strcspn(name, "'");
+	const char *dots = name[length] == '\0' ? "" : name[length + 1] ? "_dot_dot" : "_dot";
+	char *text = format("%.*s%s", (int)length, plain_name(name), dots);
+	for (char *c = text; *c; c++)
+		*c = strchr("[]()", *c) ? '_' : *c;
 	return text;
 }
 
@@ -135,14 +163,36 @@ static void print_term(FILE *to, mpq_srcptr factor, const char *name, bool *begu
 	*begun = true;
 }
 
+static bool is_dependent(const struct linearising *l, int coord)
+{
+	return l->tangent && l->tangent->follows[0][coord].slope;
+}
+
+/* Whether components of the vector are coordinates of their own, since others depend on them */
+static bool is_divided(const struct linearising *l, const struct symbol *s)
+{
+	bool divided = false;
+	for (int i = 0; i < s->length; i++)
+		divided = divided || is_dependent(l, s->index + i);
+	return divided;
+}
+
+/* Of an independent one: q[1], q_1_ of a vector that is divided */
+static const char *coordinate_name(const struct linearising *l, int coord)
+{
+	const char *name = l->b->model->names.coord[coord];
+	return is_divided(l, l->b->model->frame.coord[coord]) ? output_name(name) : plain_name(name);
+}
+
 /* x'', u', u(t - 0.1): of a coordinate or an input */
 static const char *name_of_fixing(const struct linearising *l, const struct fixing *what)
 {
 	const struct symbol *s = what->symbol;
 	const struct delays *delays = l->b->model->delays;
 	const bool input = s->kind == SYMBOL_INPUT;
-	const char *name = !input ? l->b->model->names.coord[what->coord] : s->delayed ? s->delayed->name : s->name;
-	name = format("%s%.*s", plain_name(name), what->order, "''");
+	const char *name = input ? plain_name(s->delayed ? s->delayed->name : s->name)
+				 : coordinate_name(l, what->coord);
+	name = format("%s%.*s", name, what->order, "''");
 	if (!input || !s->delayed)
 		return name;
 	RATIONAL delay = ZERO;
@@ -157,11 +207,13 @@ static void print_declarations(FILE *to, const struct linearising *l)
 	const struct delays *delays = l->b->model->delays;
 	fprintf(to, "model %s\n", delays ? delays->name : l->b->model->name);
 	for (const struct symbol *s = spec->first; s; s = s->next) {
-		const char *name = s->name ? plain_name(s->name) : "";
-		if (s->kind == SYMBOL_COORD && s->length)
-			fprintf(to, "coord %s[%d]\n", name, s->length);
-		else if (s->kind == SYMBOL_COORD)
-			fprintf(to, "coord %s\n", name);
+		if (s->kind != SYMBOL_COORD)
+			continue;
+		if (s->length && !is_divided(l, s))
+			fprintf(to, "coord %s[%d]\n", plain_name(s->name), s->length);
+		for (int i = s->index; i < s->index + (!s->length ? 1 : is_divided(l, s) ? s->length : 0); i++)
+			if (!is_dependent(l, i))
+				fprintf(to, "coord %s\n", coordinate_name(l, i));
 	}
 	static const char *const hold[] = { [0] = "", [1] = " hold first", [3] = " hold third", [5] = " hold fifth",
 					    [7] = " hold seventh" };
@@ -188,41 +240,16 @@ static void print_load(FILE *to, const struct form_term *term, bool *begun)
 static void print_loads(FILE *to, const struct form *form, bool *begun)
 {
 	for (int i = 0; i < form->terms; i++)
-		if (form->term[i].basis.kind == BASIS_FORCING)
-			print_load(to, &form->term[i], begun);
+		print_load(to, &form->term[i], begun);
 }
 
-/* What is left where functions of BITS bits cancel: below 1e-60 of the largest slope, and no short number */
-static void drop_noise(int count, mpq_t *slope)
-{
-	double largest = 0;
-	for (int i = 0; i < count; i++)
-		largest = fmax(largest, fabs(mpq_get_d(slope[i])));
-	for (int i = 0; i < count; i++)
-		if (fabs(mpq_get_d(slope[i])) < 1e-60 * largest && strlen(exact_text(slope[i])) > SHORT)
-			mpq_set_ui(slope[i], 0, 1);
-}
-
-/* By all that is fixed but time: [fixing][form] */
-static mpq_t **all_slopes(struct linearising *l, int count, const struct form *const *form)
-{
-	mpq_t **slope = ARRAY(mpq_t *, l->fixings);
-	for (int f = 0; f < l->fixings - 1; f++) {
-		slope[f] = rationals((size_t)count);
-		slopes_at(l, count, form, f, slope[f]);
-		drop_noise(count, slope[f]);
-	}
-	return slope;
-}
-
-/* Terms of all that is fixed from `first` to `end`, from the last one to the first */
-static void print_terms(FILE *to, const struct linearising *l, mpq_t *const *slope, int row, const int *order,
+static void print_terms(FILE *to, const struct linearising *l, const struct tangent_row *row, const int *order,
 			bool negative, bool *begun)
 {
 	RATIONAL factor = ZERO;
 	for (; *order >= 0; order++) {
 		const struct fixing *what = &l->fixing[*order];
-		mpq_set(factor, slope[*order][row]);
+		mpq_set(factor, row->slope[*order]);
 		if (negative)
 			mpq_neg(factor, factor);
 		print_term(to, factor, name_of_fixing(l, what), begun);
@@ -246,70 +273,98 @@ static const int *states_in_order(const struct linearising *l)
 static const int *inputs_in_order(const struct linearising *l)
 {
 	int *order = ARRAY(int, 2 * l->inputs + 1), count = 0;
-	for (int f = l->states + l->n; f < l->fixings - 1; f++)
+	for (int f = l->states + l->rows; f < l->fixings - 1; f++)
 		order[count++] = f;
 	order[count] = -1;
 	return order;
 }
 
+static void print_equation(FILE *to, const struct linearising *l, const struct tangent_row *row)
+{
+	bool left = false, right = false;
+	print_terms(to, l, row, states_in_order(l), false, &left);
+	fputs(left ? " = " : "0 = ", to);
+	print_terms(to, l, row, inputs_in_order(l), true, &right);
+	print_loads(to, row->load, &right);
+	fputs(right ? "\n" : "0\n", to);
+}
+
+/* v' - what it follows from = 0: of a coordinate that a constraint on velocities leaves */
+static void print_velocity(FILE *to, const struct linearising *l, int coord)
+{
+	RATIONAL minus = RATIO(-1, 1);
+	struct tangent_row *follows = &l->tangent->follows[1][coord];
+	for (int f = 0; f < l->fixings; f++)
+		mpq_neg(follows->slope[f], follows->slope[f]);
+	follows->load = form_scale(follows->load, minus);
+	mpq_set_ui(follows->slope[l->b->model->system.velocity[coord]], 1, 1);
+	print_equation(to, l, follows);
+}
+
 static void print_equations(FILE *to, struct linearising *l)
 {
-	const struct form **form = ARRAY(const struct form *, l->n);
+	const struct tangent_row *row = l->tangent ? l->tangent->row : rows_at(l, l->n, NULL);
 	for (int i = 0; i < l->n; i++)
-		form[i] = l->b->full->residual[i].form;
-	mpq_t **slope = all_slopes(l, l->n, form);
-	for (int i = 0; i < l->n; i++) {
-		bool left = false, right = false;
-		print_terms(to, l, slope, i, states_in_order(l), false, &left);
-		fputs(left ? " = " : "0 = ", to);
-		print_terms(to, l, slope, i, inputs_in_order(l), true, &right);
-		print_loads(to, form[i], &right);
-		fputs(right ? "\n" : "0\n", to);
-	}
+		if (row[i].slope)
+			print_equation(to, l, &row[i]);
+	for (int j = 0; j < l->n && l->tangent; j++)
+		if (l->tangent->follows[1][j].slope && !l->tangent->follows[0][j].slope)
+			print_velocity(to, l, j);
 }
 
-/* x, q[1]', x'': what needs no expression */
-static bool names_itself(const struct model *model, const char *name)
+/* x, q[1]', x'': what needs no expression, as the spec has it; NULL: it needs one */
+static const char *name_of_itself(const struct linearising *l, const char *name)
 {
+	const struct model *model = l->b->model;
 	const size_t length = strlen(name);
-	if (place_among(model->system.states, model->names.state, name, length) >= 0)
-		return true;
 	for (int i = 0; i < model->n; i++) {
-		const size_t own = strlen(model->names.coord[i]);
-		if (strncmp(model->names.coord[i], name, own) == 0 && name[own] == '\'' &&
-		    strspn(name + own, "'") == length - own)
-			return true;
+		const size_t own = strlen(model->names.coord[i]), primes = strspn(name + own, "'");
+		const bool depends = l->tangent && l->tangent->follows[primes < 2 ? primes : 2][i].slope;
+		if (strncmp(model->names.coord[i], name, own) == 0 && primes == length - own && !depends)
+			return format("%s%s", coordinate_name(l, i), name + own);
 	}
-	return false;
+	return NULL;
 }
 
-/* v[1], of a vector that is no coordinate, momentum(x): v_1_, momentum_x_ */
-static const char *output_name(const char *name)
+static void print_output_of(FILE *to, struct linearising *l, const char *name, const struct form *form)
 {
-	char *text = format("%s", plain_name(name));
-	for (char *c = text; *c; c++)
-		*c = strchr("[]()", *c) ? '_' : *c;
-	return text;
+	bool begun = false;
+	RATIONAL minus = RATIO(-1, 1);
+	struct tangent_row *row = rows_at(l, 1, &form);
+	put_dependent(l, l->tangent, row);
+	fprintf(to, "output %s = ", output_name(name));
+	print_terms(to, l, row, states_in_order(l), false, &begun);
+	print_terms(to, l, row, inputs_in_order(l), false, &begun);
+	print_loads(to, form_scale(row->load, minus), &begun);
+	fputs(begun ? "\n" : "0\n", to);
+}
+
+/* With multipliers as unknowns of the equations, like highest derivatives */
+static const struct form *form_of_output(const struct linearising *l, const struct output *output)
+{
+	struct collector *c = &l->b->collector;
+	if (!output->value || !l->tangent)
+		return output->form ? output->form : output->left;
+	c->whole_time = c->output = c->reading = true;
+	forget_lets(l->b->spec);
+	const struct form *form = collect(c, output->value)->cell[output->cell];
+	c->whole_time = c->output = c->reading = false;
+	return form;
 }
 
 /* A peak over time is of no linear model. */
 static void print_output(FILE *to, struct linearising *l, const struct output *output)
 {
-	const struct form *form = output->form ? output->form : output->left;
-	bool begun = false;
-	if (output->peak || !form)
+	if (output->peak || !(output->value || output->form || output->left))
 		return;
-	if (names_itself(l->b->model, output->name)) {
+	const char *own = name_of_itself(l, output->name);
+	if (own) {
 		const bool scaled = output->unit && !is_coherent(output->unit);
-		fprintf(to, "output %s%s\n", plain_name(output->name),
+		fprintf(to, "output %s%s\n", own,
 			scaled ? format(" \"%s\"", output->unit->text) : "");
 		return;
 	}
-	mpq_t **slope = all_slopes(l, 1, &form);
-	fprintf(to, "output %s = ", output_name(output->name));
-	print_terms(to, l, slope, 0, states_in_order(l), false, &begun);
-	print_terms(to, l, slope, 0, inputs_in_order(l), false, &begun);
-	fputs(begun ? "\n" : "0\n", to);
+	print_output_of(to, l, output->name, form_of_output(l, output));
 }
 
 static void print_outputs(FILE *to, struct linearising *l)
@@ -317,6 +372,9 @@ static void print_outputs(FILE *to, struct linearising *l)
 	const struct model *model = l->b->model;
 	for (int i = 0; i < model->outputs && model->declared_outputs; i++)
 		print_output(to, l, &model->output[i]);
+	for (int i = 0; i < l->states && l->tangent && !model->declared_outputs; i++)
+		print_output(to, l, &(struct output){ .name = model->names.state[i], .form =
+			     coordinate_form(&model->frame, model->system.coord[i], i >= l->n) });
 }
 
 /* The deviations with which the model starts: its initial values less the point */
@@ -325,17 +383,12 @@ static void print_initials(FILE *to, const struct linearising *l)
 	const struct model *model = l->b->model;
 	RATIONAL value = ZERO;
 	for (int i = 0; i < l->states; i++) {
+		const int coord = model->system.coord[i];
 		mpq_sub(value, model->initial[i], l->state[i]);
-		if (mpq_sgn(value) != 0)
-			fprintf(to, "init %s = %s\n", plain_name(model->names.state[i]), number_text(value));
+		if (mpq_sgn(value) != 0 && !(l->tangent && l->tangent->follows[i >= l->n][coord].slope))
+			fprintf(to, "init %s%s = %s\n", coordinate_name(l, coord), i >= l->n ? "'" : "",
+				number_text(value));
 	}
-}
-
-/* ---- the whole ---- */
-
-static const struct form *without_loads(const struct form *form)
-{
-	return terms_of_kinds(form, ~(1u << BASIS_FORCING));
 }
 
 static void list_inputs(struct linearising *l)
@@ -363,7 +416,7 @@ static const char *side_text(struct linearising *l, const struct switching_funct
 	const struct form *form = form_in(e, e->segments > 1 ? segment_at(l) : 0);
 	RATIONAL value = ZERO;
 	int k = 0;
-	value_at(l, point, l->timed ? form : without_loads(form), value);
+	value_at(l, point, l->timed ? form : terms_of_kinds(form, ~(1u << BASIS_FORCING)), value);
 	while (k < e->breaks && mpq_cmp(e->at[k], value) < 0)
 		k++;
 	*interval = k;
@@ -398,7 +451,7 @@ static const char *loads_text(struct linearising *l)
 	RATIONAL value = ZERO;
 	struct point *point = point_of(l);
 	struct form *all = NEW(struct form), *one;
-	for (int i = 0; i < l->n; i++)
+	for (int i = 0; i < l->rows; i++)
 		for (int k = 0; k < l->residual[i]->terms; k++)
 			if (l->residual[i]->term[k].basis.kind == BASIS_FORCING &&
 			    !form_find(all, &l->residual[i]->term[k].basis))
@@ -434,7 +487,7 @@ static void say_point(struct linearising *l)
 	const struct model *model = l->b->model;
 	const bool varies = !l->timed && (l->varies || loads_change(&model->system));
 	say_note(l->b->spec->name_at, "linearised at %s%s%s%s", model->equations.point,
-		 l->rest || is_equilibrium(l) ? ""
+		 l->rest || l->stays ? ""
 		 : l->timed ? "; coefficients are those of that time"
 			    : "; the motion does not stay there, and its constant acceleration is left out",
 		 varies ? "; what depends on time is as at t = 0" : "",
@@ -447,28 +500,6 @@ static void check_contacts(const struct building *b)
 	if (facts.contacts)
 		error(b->spec->name_at, "plrun runs any model, also with a record that sweeps",
 		      "friction, impacts and jumps have no linear equations");
-	for (int i = 0; i < b->spec->lagrange.energies; i++)
-		if (b->spec->lagrange.energy[i].kind == 'G')
-			error(b->spec->lagrange.energy[i].at, "coordinates that fulfil it by themselves have some",
-			      "linear equations at a point are not built for constraints");
-}
-
-/* By the residuals as they are written: solved for highest derivatives, forces on one coordinate would stand in all
- * equations that the mass matrix couples. */
-static void with_written(struct linearising *l, void (*find)(struct linearising *l))
-{
-	const struct form **solved = l->residual;
-	struct collector *c = &l->b->collector;
-	const int keep = (int)c->keep;
-	c->equation = true;
-	c->keep = KEEP_ALL;
-	l->residual = ARRAY(const struct form *, l->n);
-	for (int i = 0; i < l->n; i++)
-		l->residual[i] = without_loads(residual_as_written(l->b->full, l->b->owner, i));
-	find(l);
-	l->residual = solved;
-	c->equation = false;
-	c->keep = (unsigned)keep;
 }
 
 /* The point and what F is of; false: the states there are those of a motion that has to be run first */
@@ -480,17 +511,13 @@ static bool find_point(struct linearising *l)
 	for (int i = 0; i < l->states; i++)
 		mpq_set(l->state[i], model->initial[i]);
 	const int given = l->rest ? 0 : take_values(l, place);
-	for (int i = 0; i < l->n; i++) {
-		const struct form *form = l->b->full->residual[i].form;
-		l->residual[i] = l->timed ? form : without_loads(form);
-	}
+	list_residuals(l);
 	if (l->timed && given == 1) {
 		model->equations.motion_end = time_of(l);
 		return false;
 	}
 	if (l->rest)
-		with_written(l, strcmp(place, EQUILIBRIA) == 0 ? find_equilibria : find_equilibrium);
-	find_residuals(l);
+		(strcmp(place, EQUILIBRIA) == 0 ? find_equilibria : find_equilibrium)(l);
 	return true;
 }
 
@@ -511,32 +538,39 @@ static void spell_places(const struct linearising *l)
 	const struct equations *e = &l->b->model->equations;
 	for (int k = 0; k < e->equilibria; k++) {
 		const char *text = "";
-		for (int i = 0; i < l->n; i++)
+		for (int i = 0; i < l->states; i++)
 			text = format("%s%s%s=%s", text, i ? "," : "", l->b->model->names.state[i],
-				      decimal_text(e->equilibrium[k].state[i], 80));
+				      i < l->n ? decimal_text(e->equilibrium[k].state[i], 80) : "0");
 		e->equilibrium[k].place = text;
 	}
 }
 
 static struct linearising linearising_of(struct building *b)
 {
-	struct linearising l = { .b = b, .n = b->model->n, .states = b->model->system.states, .fall = 1e-4 };
+	const int held = b->spec->count.multipliers;
+	struct linearising l = { .b = b, .n = b->model->n, .states = b->model->system.states, .held = held,
+				 .rows = b->model->n + held, .fall = 1e-4 };
 	list_inputs(&l);
 	if (!b->full)
 		collect_full(b);
 	if (diagnostics_errors())
 		abandon();
+	b->collector.equation = true;           /* highest derivatives have factors in rows as written */
+	b->collector.keep = KEEP_ALL;
 	list_fixings(&l);
 	l.state = rationals((size_t)l.states);
-	l.F = rationals((size_t)l.n);
-	l.residual = ARRAY(const struct form *, l.n);
+	l.F = rationals((size_t)l.rows);
 	return l;
 }
 
 void find_symmetries(void *building)
 {
+	struct collector *c = &((struct building *)building)->collector, kept = *c;
 	struct linearising l = linearising_of(building);
-	with_written(&l, find_free_directions);
+	list_residuals(&l);
+	find_free_directions(&l);
+	c->equation = kept.equation;
+	c->keep = kept.keep;
 }
 
 void linearise(void *building)
@@ -554,7 +588,8 @@ void linearise(void *building)
 		return;
 	find_highest(&l);
 	check_kinks(&l);
-	l.looks = true;
+	look_for_time(&l);
+	l.tangent = tangent_of(&l);
 	FILE *to = need_memory(open_memstream(&text, &length));
 	print_spec(to, &l);
 	fclose(to);

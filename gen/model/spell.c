@@ -133,7 +133,7 @@ static const char *basis_text(struct spelling *s, const struct basis *basis)
 	case BASIS_INPUT: return format("%s%s", model->system.input[basis->index].name, basis->order ? "'" : "");
 	case BASIS_COORD:
 		return format(strchr(model->names.coord[basis->index], ' ') ? "(%s)%.*s" : "%s%.*s",
-			      model->names.coord[basis->index], basis->order, "''");
+			      model->names.coord[basis->index], basis->index < model->n ? basis->order : 0, "''");
 	default:          break;
 	}
 	struct load load = { .forcing = basis->forcing };

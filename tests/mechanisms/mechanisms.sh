@@ -66,7 +66,7 @@ for spec in "$cases"/*.spec; do
 		check "$name" "$name, $scheme" "$within" --scheme "$scheme"
 	done 3<schemes
 done
-# The Jacobian of the accelerations against their differences: K of the linear equations at a point, whose M is 1
+# The Jacobian of the accelerations, M^-1 K of the linear equations at a point, against their differences
 cat >slope.spec <<'SPEC'
 model slope
 param p = 1
@@ -82,13 +82,43 @@ accelerations() {
 	"$plrun" -D "p=$1" slope.spec 0.01 2>>log | sed -n '2s/,/ /gp' | cut -d ' ' -f 2,3
 }
 : >log
-"$PLGEN" --at q1=1,q2=0.5 --explain=json slope.spec 2>>log | tr -d ' \n[]' | sed 's/.*"K"://; s/"B".*//; s/,/ /g' >K
+"$PLGEN" --at q1=1,q2=0.5 --explain=json slope.spec 2>>log | tr -d ' \n[]' |
+	sed 's/.*"M":\(.*\)"C":.*"K":\(.*\)"B".*/\1\2/; s/,/ /g' >K
 echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cat K)" | awk '
 	{ a = -($1 - $3)/2e-5; b = -($2 - $4)/2e-5
-	  print "differences " a " " b ", K " $5 " " $7
-	  near = (a - $5)^2 + (b - $7)^2 < 1e-14
+	  print "differences " a " " b ", M and K " $5 " " $6 " " $7 " " $8 ", " $9 " " $11
+	  near = ($5*a + $6*b - $9)^2 + ($7*a + $8*b - $11)^2 < 1e-14
 	  exit !near }' >>log
 result $? 'the Jacobian of accelerations is that of their differences'
+# The linear equations that constraints leave at a place, against those of coordinates that fulfil them
+awk -v rest=minimal.spec -f "$root/tests/cases.awk" "$root/tests/mechanisms/pairs.cases" >pairs
+numbers() {
+	"$PLGEN" --at "$2" --explain=json "$1" 2>>log | tr -d '\n' |
+		sed 's/.*"ss": *\(.*\)"Phi": *\(.*\)"order".*/\1 \2/' | grep -o '[-0-9.e]*[0-9]\|"[^"]*"'
+}
+while read -r name; do
+	: >log
+	place=$(sed -n 's/^# at //p' "$name.spec")
+	numbers "$name.spec" "$place" >held
+	numbers "$name.minimal.spec" "$place" >free
+	paste held free | awk '
+		$1 ~ /^"/ && $2 ~ /^"/ { next }
+		{ d = $1 - $2; size = $1*$1 > 1 ? $1*$1 : 1; wrong += NF != 2
+		  worst = d*d/size > worst ? d*d/size : worst }
+		END { print NR " numbers differ by " sqrt(worst) " of themselves, at most 1e-14"
+		      exit !(NR > 30 && !wrong && worst < 1e-28) }' >>log
+	result $? "$name: linear equations as in minimal coordinates"
+done <pairs
+# Of a linkage there are two ways to close it: its equilibria are those of one, and others
+for name in four_bar four_bar.minimal; do
+	"$PLGEN" --equilibrium "$name.spec" 2>>log |
+		sed -n 's/^[0-9]*: a = \([^,;]*\).*; /a \1 /p; s/^    *[-0-9]/&/p' >"$name.found"
+done
+sort -u four_bar.found >both
+sort -u four_bar.minimal.found | comm -23 - both >log
+cat four_bar.minimal.found >>log
+test "$(wc -l <four_bar.minimal.found)" -eq 5 && test "$(wc -l <log)" -eq 5
+result $? 'equilibria of a linkage, and their poles, as in minimal coordinates'
 # Second derivatives of sines are shifts: a link of a chain takes 4 products of sequences, where it took 13
 for model in chain robot_arm; do
 	"$PLGEN" --scheme taylor "$root/models/$model.spec" 2>>log |
