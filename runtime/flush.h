@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* flush.h: states that are all but nothing become 0.  Such numbers soon have fewer bits, for which some processors take
+/* flush.h: decayed states become 0, before they are denormal: such numbers have fewer bits, and some processors take
  * many times as long; to look every 64 steps is often enough.  A part of a model is what no other state acts on.  In a
  * part that decays a state becomes 0 below 2^-963 (float: 2^-116), beside others of its part below 2^-900 (2^-120) of
  * the largest.  It is the exponent that is compared, without arithmetic.  Included by the file of the model before its

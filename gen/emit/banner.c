@@ -112,7 +112,7 @@ static void banner_flush(const struct emitter *e)
 {
 	const struct denormal_flush *flush = e->step->linear.flush;
 	const bool single = e->model->request.single;
-	say(e, " * Denormal flush: every 64 steps states become 0 that are below ");
+	say(e, " * Denormal flush: every 64 steps those states are set to 0 that are below ");
 	if (flush->decaying > 0)
 		say(e, "%s%s", single ? "2^-116" : "2^-963",
 		    flush->decaying < flush->parts ? " where motions decay" : "");

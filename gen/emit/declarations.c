@@ -85,7 +85,7 @@ static void declare_state_functions(const struct emitter *e)
 	emit_if_any(e->prints->declare_state, e);
 	if (e->ramps)
 		announce(e, spell(e, "void   $n_hold($n *s, const double u[$N_INPUTS]);"),
-			most_samples_before(e) ? "the next sample, no step" : "the previous sample");
+			most_samples_before(e) ? "the next sample, no step" : "the sample before the first step");
 }
 
 void declare_driven_step(const struct emitter *e, const char *note)

@@ -41,7 +41,7 @@ void emit_step(const struct emitter *e);
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
-void emit_flush(const struct emitter *e);                         /* NAME_flush, of states that are all but nothing */
+void emit_flush(const struct emitter *e);                         /* NAME_flush, of decayed states */
 void emit_step_advance(const struct emitter *e);                  /* samples, phases and time move on */
 const char *checks_of_step(const struct emitter *e);              /* what is looked at in the state behind it */
 void emit_step_end(const struct emitter *e);                      /* both */

@@ -327,5 +327,5 @@ const char *parts_text(const struct spec *spec, int index)
 	}
 	return format("%s as %s%s%s", part->file, names,
 		      part->unobservable ? ", which no output sees: not modelled" : "",
-		      !part->unobservable && *part->aside ? format("; not read here: its %s", part->aside) : "");
+		      !part->unobservable && *part->aside ? format("; not used of it: %s", part->aside) : "");
 }

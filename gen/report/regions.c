@@ -205,8 +205,8 @@ static void text_of_one_part(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct switching *s = model->switching;
-	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions%s, %d "
-		    "different, in each of which every constant is its closed form, correctly rounded; crossings "
+	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions%s with %d "
+		    "different linear systems; each constant of these is its closed form, correctly rounded; crossings "
 		    "inside a step are found in order, to rounding.\n", possible_regions(s),
 		s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
 	text_switching_functions(to, step);
@@ -231,7 +231,7 @@ static void text_part(FILE *to, const struct step *full, int index)
 	fprintf(to, "; switching function%s", s->functions > 1 ? "s" : "");
 	for (int i = 0; i < s->functions; i++)
 		fprintf(to, "%s %d", i ? "," : "", part->function[i]);
-	fprintf(to, "; %d regions, %d different", possible_regions(s), s->systems);
+	fprintf(to, "; %d regions with %d different linear systems", possible_regions(s), s->systems);
 	if (check->fast_path)
 		fprintf(to, "; polynomials of degree %d\n", check->degree);
 	else

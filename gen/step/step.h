@@ -59,7 +59,7 @@ struct carried {                    /* states that nothing leads back from, whic
 };
 struct linear_step {                /* what steps of linear models alone have */
 	struct kicks kicks;
-	struct denormal_flush *flush;          /* of states that are all but nothing; NULL: none */
+	struct denormal_flush *flush;          /* of decayed states; NULL: none */
 	struct load_phase *phase;   /* per load */
 	mpfr_t growth;              /* pl: 1/s, largest real part of the modified equation's poles (report only) */
 };

@@ -28,7 +28,7 @@ const char *unbounded_text(const struct step *step)
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
 	return !is_linear_alone(step)	     ? model->switching ? "events inside a step are searched"
-						       : "it is a bound of linear steps alone"
+						       : "linear steps alone have one"
 	       : system->segments > 1	     ? "loads change their formula inside a step"
 	       : model->written->ranges > 0  ? "states are compared with their ranges"
 	       : model->delays		     ? "the step of a core is taken in parts"

@@ -27,7 +27,7 @@ EOF
 
 # stated FILE: the bound in its banner
 stated() {
-	sed -n 's/.* loads counted, rounding takes at most \([^ ]*\) of .*/\1/p' "$1"
+	sed -n 's/.* loads included, rounding errors are at most \([^ ]*\) of .*/\1/p' "$1"
 }
 
 # add NAME [OPTIONS]: NAME.spec, inputs 0 in the closed form, outputs linear

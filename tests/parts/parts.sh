@@ -128,7 +128,7 @@ result $? 'a need: parts that no output sees are not modelled'
 
 { echo 'need speed within 1e-3 until 1'; echo 'budget 100 instructions on cortex-m0'; } >>inertia.spec
 "$plgen" drivetrain.spec >needs_apart.c 2>log && head -n 60 needs_apart.c >>log &&
-    grep -q 'inertia.spec as .*not read here: its step, need, budget\.' needs_apart.c &&
+    grep -q 'inertia.spec as .*not used of it: step, need, budget\.' needs_apart.c &&
     ! grep -q certified needs_apart.c
 result $? 'needs and the budget of a part are of the part by itself'
 
@@ -140,7 +140,7 @@ result $? 'needs and the budget of a part are of the part by itself'
 result $? '--explain=json: parts, what is not modelled, names'
 
 "$plgen" chain.spec 2>log | head -n 40 >banner &&
-    grep -qF 'link.spec as left.one, left.two, right.one, right.two; not read here: its step, scheme.' banner &&
+    grep -qF 'link.spec as left.one, left.two, right.one, right.two; not used of it: step, scheme.' banner &&
     grep -qF 'link.spec as spare, which no output sees: not modelled.' banner &&
     grep -qF 'left.one: x' banner
 result $? 'the banner names the parts'

@@ -82,7 +82,7 @@ static void banner_blocks(const struct emitter *e)
 		       " * ",
 		    p->touched == p->all ? format("all %d", p->all) : format("%d of %d", p->touched, p->all));
 	say(e, "$n_retune computes factors from other values%s on the\n"
-	       " * target; of the spec's they are these, correctly rounded. It needs some %d KB of stack.\n",
+	       " * target; those of the spec's values are correctly rounded. It needs some %d KB of stack.\n",
 	    p->full ? " and another h" : "", p->kilobytes);
 }
 

@@ -186,8 +186,8 @@ const char *drift_text(const struct drift *drift, mpq_srcptr h)
 	const double steps = 3600 / nearest_double(h);
 	double amplitude = steps * drift->amplitude, size = amplitude < 0 ? -amplitude : amplitude;
 	const char *change = amplitude == 0 ? "no amplitude"
-			     : size < 0.1   ? format("amplitudes by %.2g of themselves at most", size)
+			     : size < 0.1   ? format("amplitudes by at most %.2g of themselves", size)
 					    : format("an amplitude by a factor of e^%.3g", amplitude);
-	return format("In one hour, %.3g steps, the rounding of its constants changes %s, phases by at most %.2g rad",
+	return format("In one hour (%.3g steps) the rounding of its constants changes %s, phases by at most %.2g rad",
 		      steps, change, steps * drift->phase);
 }

@@ -423,8 +423,8 @@ void plan_forced(struct step *step)
 const char *rounding_text(const struct step *step)
 {
 	const struct rounding *r = &step->rounding;
-	return format("In the first %d steps%s, loads counted, rounding takes at most %.2g of the largest value of a "
-		      "state (%s)%s",
+	return format("In the first %d steps%s, loads included, rounding errors are at most %.2g of the largest value "
+		      "of a state (%s)%s",
 		      r->steps, step->branch->system.inputs ? " with inputs 0" : "", r->relative, r->state,
 		      r->tiny ? format("; some are too small for %s", target_name()) : "");
 }
