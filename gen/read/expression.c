@@ -332,6 +332,9 @@ static struct node *read_matrix(struct parser *p)
 		if (!is_op(p, ";"))
 			break;
 	}
+	if (p->token.kind == TOKEN_NUMBER || (p->token.kind == TOKEN_NAME && !stray_unit_note(p)))
+		error(p->token.at, "the cells of a row are separated by commas, rows by semicolons: [1, 0; 0, 1]",
+		      "expected ',', ';' or ']', found %s", token_text(p->token));
 	expect_op(p, "]", "',', ';' or ']'");
 	p->nesting--;
 	node->end = p->end;
@@ -526,6 +529,9 @@ void expect_word(struct parser *p, const char *word)
 	if (p->token.kind == TOKEN_NAME && p->token.primes == 0 && nearest_name(p->token.name, 1, &word))
 		error(p->token.at, format("did you mean '%s'?", word), "expected '%s', found '%s'", word,
 		      p->token.name);
+	const char *form = statement_form(p);
+	if (form)
+		error(p->token.at, form, "expected '%s', found %s", word, token_text(p->token));
 	unexpected(p, format("'%s'", word));
 }
 

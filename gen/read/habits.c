@@ -120,11 +120,12 @@ static const char *function_note(const char *name)
 		{ "lookup", "a curve through points is written table(x; x0, y0; x1, y1)" },
 		{ "if", "a condition is written t < 1 ? 2 : 3" },
 		{ "heaviside", "a step in time is a condition: t < 1 ? 0 : 2" },
+		{ "stepfun", "a step in time is a condition: t < 1 ? 0 : 2" },
 		{ "integral", INTEGRAL }, { "integrate", INTEGRAL }, { "int", INTEGRAL }, { "integ", INTEGRAL }
 	};
 	static const char *const records[] = { "csv", "file", "load", "read", "readcsv", "read_csv", "record", "wav" };
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
-		if (strcmp(name, habit[i].name) == 0)
+		if (strcasecmp(name, habit[i].name) == 0)
 			return habit[i].note;
 	for (size_t i = 0; i < sizeof records / sizeof *records; i++)
 		if (strcmp(name, records[i]) == 0)
@@ -181,6 +182,23 @@ const char *statement_habit(const char *word)
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
 		if (strcasecmp(word, habit[i].word) == 0)
 			return habit[i].statement;
+	return NULL;
+}
+
+const char *statement_form(const struct parser *p)
+{
+	static const struct { const char *word, *form; } habit[] = {
+		{ "coord", "coord x, y, q[3]" }, { "step", "step 0.01" },
+		{ "input", "input u, or input u hold first; a known load is a let: let f = sin(3*t)" },
+		{ "mass", "mass m at x" }, { "force", "force F on x" }, { "spring", "spring k between x, y" },
+		{ "damper", "damper c between x, ground" }, { "friction", "friction F between x, ground" },
+		{ "stop", "stop between x, ground at 0.1 restitution 0.5" }, { "when", "when x >= 0.1: x' = -0.8*x'" },
+		{ "need", "need x within 1e-3 until 10" }
+	};
+	const char *text = p->lexer.source->text + p->statement;
+	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
+		if (strspn(text, WORD) == strlen(habit[i].word) && strncmp(text, habit[i].word, strspn(text, WORD)) == 0)
+			return habit[i].form;
 	return NULL;
 }
 

@@ -99,6 +99,8 @@ static void check_number(struct token token)
 	if (good > 0 && is_letter(text[good]) && text[good] != '_' && !exponent && !hexadecimal)
 		note = format("multiplication is written with *: %.*s*%.*s", (int)good, text,
 			      (int)(token.length - good), text + good);
+	if (token.at.offset >= 6 && strncmp(text - 6, "model ", 6) == 0)
+		note = "a name begins with a letter";
 	const char *unit = good > 0 ? unit_note(text, good, text + good, token.length - good) : NULL;
 	if (unit)
 		note = format("%s; %s", unit, note);

@@ -96,6 +96,9 @@ static void read_equation(struct parser *p)
 	if (p->token.kind == TOKEN_END && equation.left->kind == NODE_COMPARE && equation.left->comparison == CMP_EQ)
 		error(equation.left->at, "an equation has a single =",
 		      "expected an operator or the '=' of the equation, found '=='");
+	if (p->token.kind == TOKEN_END && !is_unfinished(p))
+		error(p->token.at, "an equation of motion has two sides: m*x'' + c*x' + k*x = 0",
+		      "expected an operator or the '=' of the equation, found %s", token_text(p->token));
 	if (!is_op(p, "="))
 		unexpected(p, "an operator or the '=' of the equation");
 	take(p);

@@ -146,6 +146,7 @@ const char *init_note(const struct parser *p, struct token name);
 /* at an unknown name: x1dot, der(x1), Pi, csv(...) */
 const char *habit_note(const struct parser *p, struct token name, is_coordinate *is);
 const char *statement_habit(const char *word);              /* parameter: param */
+const char *statement_form(const struct parser *p);         /* spring k between x, y, of a statement spring */
 bool opens_comment(const struct parser *p);                 /* at one of the signs of // */
 bool is_unfinished(const struct parser *p);                 /* at the end of a line that a , or + ends */
 

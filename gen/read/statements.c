@@ -276,6 +276,8 @@ struct token read_state_name(struct parser *p, struct symbol **coord, int *compo
 	*coord = find_symbol(p, name.name);
 	if (*coord && (*coord)->broken)
 		abandon();
+	if (!*coord && (strcmp(name.name, "v") == 0 || strcmp(name.name, "v0") == 0))
+		error(name.at, "the velocity of a coordinate x is x'", "unknown name '%s'", name.name);
 	if (!*coord && !is_reserved(name.name))
 		unknown_name(p, name);
 	if (!*coord || (*coord)->kind != SYMBOL_COORD)

@@ -62,6 +62,7 @@ static const char *stray_note(const struct parser *p)
 {
 	bool after_operand = p->operand_end > 0 && p->operand_end == p->end.offset;
 	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
+	const char *form = statement_form(p);
 	const char *unit = word ? stray_unit_note(p) : NULL;
 	if (p->token.kind == TOKEN_STRING && after_operand)
 		return "a unit stands behind a whole value, at its end or in a bracket: (9.81 \"m/s^2\")";
@@ -77,12 +78,14 @@ static const char *stray_note(const struct parser *p)
 		return "each statement has its own line; the parts of one are separated by commas";
 	if (starts_definition(p))
 		return "definitions are separated by commas";
+	if (word && form)
+		return form;
 	if (after_operand &&
 	    ((p->token.kind == TOKEN_NAME && !is_place(p->token)) || p->token.kind == TOKEN_NUMBER || is_op(p, "(")))
 		return "multiplication is written with *";
 	if (is_op(p, "=="))
 		return "an equation has a single =";
-	return NULL;
+	return form;
 }
 
 _Noreturn void unexpected(const struct parser *p, const char *expected)

@@ -374,7 +374,7 @@ void report_friction(const struct node *node, const char *where)
 	error(node->start,
 	      "dry friction, which sticks and slips, is written friction(v, F) in place of F*sgn(v); a force that is "
 	      "continuous in the velocity is treated, such as clip(100*x', -1, 1), and one that jumps with a position",
-	      "the force jumps where %s: as a formula that does not stick", where);
+	      "the force jumps where %s, and as a formula it cannot stick", where);
 }
 
 /* A time that is no later than the start is passed by no step, and what is continuous at the end of a step may
