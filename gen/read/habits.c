@@ -196,8 +196,9 @@ const char *statement_form(const struct parser *p)
 		{ "need", "need x within 1e-3 until 10" }
 	};
 	const char *text = p->lexer.source->text + p->statement;
+	size_t length = strspn(text, WORD);
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
-		if (strspn(text, WORD) == strlen(habit[i].word) && strncmp(text, habit[i].word, strspn(text, WORD)) == 0)
+		if (length == strlen(habit[i].word) && strncmp(text, habit[i].word, length) == 0)
 			return habit[i].form;
 	return NULL;
 }
