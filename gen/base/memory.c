@@ -71,7 +71,7 @@ static size_t kind_of(size_t size)
 	return (size + CELL - 1) / CELL;
 }
 
-static void *event_split_cell(size_t kind)
+static void *cell_of_slab(size_t kind)
 {
 	size_t length = (kind + 1) * CELL;
 	if ((size_t)(end_of_slab - unsplit) < length) {
@@ -93,7 +93,7 @@ static void *new_cell(size_t size)
 	size_t kind = kind_of(size);
 	struct cell *cell = free_cells[kind];
 	if (!cell)
-		return event_split_cell(kind);
+		return cell_of_slab(kind);
 	free_cells[kind] = cell->next;
 	return cell + 1;
 }
