@@ -501,6 +501,10 @@ for place in ((0, 0), (0, 1), (37, 0), (37, 1), (99, 0), (100, 1)):
     other[place] += 1
     found.append((((Model(spec).run(other) - plain) * w).sum(), ub[place]))
 case('vjp: by samples, as costs differ', np.allclose(*np.array(found).T, rtol=1e-10), found)
+m.reset()
+ub = m.vjp(record, w, ['m', 'r'])[1]
+case('vjp: no number for samples of an input that is not named', np.isnan(ub[:, 0]).all() and not np.isnan(ub[:, 1]).any(),
+     ub[:3])
 try:
     from scipy.optimize import least_squares
     ring = 'model ring\nparam k = 40, c = 0.5\ncoord x\ninit x = 0.02\n2*x\'\' + c*x\' + k*x = 0\noutput x\nstep 0.02\n'
@@ -513,6 +517,17 @@ try:
 
     fitted = least_squares(lambda p: moved(p)[0] - measured, [40, 0.5], jac=lambda p: moved(p)[1], x_scale='jac')
     case('least_squares on jac', np.allclose(fitted.x, [50, 0.8], rtol=1e-7), fitted)
+    page = open(root + '/doc/python.md').read()
+    text = page[page.index('### A trajectory'):]
+    block = [part.split('\n', 1)[1] for part in text.split('```')[1:4:2]]
+    open('carriage.spec', 'w').write(block[0])
+    exec(block[1])
+    push, step = found.x, np.where(np.arange(101) == 10, 1e-6, 0)
+    by_steps = [(ends(push + step)[of] - ends(push - step)[of]) / 2e-6 for of in range(2)]
+    case('a trajectory through an impact: it ends where it is to, as python.md says',
+         np.allclose(ends(push), goal, atol=1e-6) and abs(found.fun - 191.37) < 0.01, found.fun, ends(push))
+    case('a trajectory through an impact: gradients within 1e-6 of differences',
+         np.allclose([slope(push, of)[10] for of in range(2)], by_steps, atol=1e-6), by_steps)
 except ImportError:
     print('skip least_squares: no SciPy')
 refuses('jac without a statement', 'derived: its spec has no statement `sensitivity`: jac=["k", "x"]',

@@ -273,8 +273,8 @@ class Derivatives:
     def vjp(self: Any, u: Any, w: Any, jac: Any = True, *, end: Any = None,
             snapshots: int = 32) -> tuple[np.ndarray, np.ndarray | None]:
         """Derivatives of a cost backwards: from w, those by the rows that run(u) returns, to those by the names of jac,
-        and by the record's samples (rows x inputs; None without inputs), of the inputs that are among the names. The
-        run begins here, and the model goes to its end.
+        and by the record's samples (rows x inputs; None without inputs; nan of inputs that are not among the names).
+        The run begins here, and the model goes to its end.
 
         end        derivatives of the cost by the states at the end
         snapshots  how many states are kept, at most 64; the others are stepped to again"""
@@ -300,6 +300,8 @@ class Derivatives:
             for p, name in enumerate(c.columns):
                 if name in self.inputs:
                     ub[0, self.inputs.index(name)] += now[p]
+        if ub is not None:
+            ub[:, [name not in c.columns for name in self.inputs]] = np.nan
         return pb * c.per, ub
 
     def _rows_of_record(self: Any, ub: np.ndarray, n: int) -> np.ndarray | None:
