@@ -91,12 +91,22 @@ static bool holds_highest(const struct solving *w, const struct form *form)
 	return holds;
 }
 
+/* Forces of friction may read multipliers: they are solved for where it slips. */
+static const struct form *without_friction(const struct form *form)
+{
+	struct form *rest = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (!is_friction(form->term[i].basis.atom))
+			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
+	return rest;
+}
+
 /* Products and choices have them for operands; a condition on one, or a function of one, is not linear. */
 static void check_linear(const struct solving *w, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
 		const struct atom *a = form->term[i].basis.atom;
-		if (!a || !a->highest)
+		if (!a || !a->highest || is_friction(a))
 			continue;
 		int held = 0;
 		for (int k = 0; k < a->operands; k++) {
@@ -115,7 +125,7 @@ static void find_column(struct solving *w, int coord)
 {
 	const struct form **residual = ARRAY(const struct form *, w->n);
 	for (int i = 0; i < w->n; i++)
-		residual[i] = residual_of(w, i);
+		residual[i] = without_friction(residual_of(w, i));
 	struct form **slope = form_derivatives(&w->b->collector, w->n, residual, false, coord,
 					       highest_order(w->b, coord));
 	for (int i = 0; i < w->n; i++)

@@ -16,15 +16,61 @@ static int drag_of(const struct model *model, const struct atom *atom)
 	return index;
 }
 
-/* It would have to be solved for with the accelerations. */
-static void check_no_highest(const struct building *b, const struct node *node, const struct form *force)
+static bool is_piecewise_or_root(enum function function)
+{
+	return function == FN_SQRT || function == FN_ABS || function == FN_SGN || function == FN_MIN ||
+	       function == FN_MAX || function == FN_CLIP || function == FN_DEADZONE || function == FN_TABLE;
+}
+
+/* Whether it reads multipliers, with which its force is solved for */
+static bool reads_multipliers(const struct building *b, const struct node *node, const struct form *force)
 {
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-	for (const struct form_term **term = terms_within(force, seen); *term; term++)
-		if (is_highest(&b->model->frame, &(*term)->basis))
-			error(node->start, "a formula of the state and of time is built",
-			      "friction by an acceleration or a reaction, '%s', is not built",
+	bool reads = false;
+	for (const struct form_term **term = terms_within(force, seen); *term; term++) {
+		const struct atom *a = (*term)->basis.atom;
+		if (a && a->highest && a->kind == ATOM_CALL && !is_piecewise_or_root(a->function))
+			error(node->start, "sums, products, ratios, powers, sqrt and what is piecewise linear are",
+			      "friction by such a function of multipliers, '%s', is not built",
 			      text_between(node->start, node->end));
+		if (!is_highest(&b->model->frame, &(*term)->basis))
+			continue;
+		reads = true;
+		if ((*term)->basis.index < b->model->n)
+			error(node->start, "a formula of the state, of time and of multipliers of constraints is built",
+			      "friction by an acceleration, '%s', is not built", text_between(node->start, node->end));
+	}
+	return reads;
+}
+
+/* Not by what a sign or a comparison is of */
+static bool depends_on_highest(const struct building *b, const struct form *form)
+{
+	bool depends = false;
+	for (int i = 0; i < form->terms && !depends; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		if (!a)
+			depends = is_highest(&b->model->frame, &form->term[i].basis);
+		const bool chooses = a && a->kind == ATOM_CHOOSE;
+		if (!a || !a->highest || a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN))
+			continue;
+		for (int k = chooses; k < a->operands && !depends; k++)
+			depends = depends_on_highest(b, a->operand[k]);
+	}
+	return depends;
+}
+
+static void derive_force(struct building *b, struct drag *drag)
+{
+	const int unknowns = b->model->n + b->spec->count.multipliers;
+	drag->by = ARRAY(struct form *, unknowns);
+	b->collector.equation = true;
+	for (int j = 0; j < unknowns; j++) {
+		const int order = b->model->frame.coord[j]->highest;
+		drag->by[j] = form_derivatives(&b->collector, 1, &drag->force, false, j, order)[0];
+		drag->curved = drag->curved || depends_on_highest(b, drag->by[j]);
+	}
+	b->collector.equation = false;
 }
 
 static void add_drag(struct building *b, const struct atom *a)
@@ -43,13 +89,17 @@ static void add_drag(struct building *b, const struct atom *a)
 			      "the velocity of friction is linear in velocities");
 	}
 	RATIONAL start = ZERO;
+	bool reads = false;
 	for (int i = 1; i < a->operands; i++) {
-		check_no_highest(b, a->node->child[i], a->operand[i]);
+		reads = reads_multipliers(b, a->node->child[i], a->operand[i]) || reads;
 		check_force(a->node->child[i], a->operand[i], start, NULL);
 	}
-	*MORE(model->contacts.drag, model->contacts.drags) =
-		(struct drag){ a, v, rate_of_form(b, v), a->operand[1], a->operand[a->operands - 1], NULL };
-	find_moving_drag(b, &model->contacts.drag[model->contacts.drags - 1]);
+	struct drag *drag = MORE(model->contacts.drag, model->contacts.drags);
+	*drag = (struct drag){ .atom = a, .velocity = v, .rate = rate_of_form(b, v), .force = a->operand[1],
+			       .rest = a->operand[a->operands - 1] };
+	if (reads)
+		derive_force(b, drag);
+	find_moving_drag(b, drag);
 }
 
 /* Friction that a function, a product or other friction has for an argument */

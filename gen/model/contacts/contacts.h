@@ -71,6 +71,10 @@ struct drag {
 	const struct atom *atom;
 	const struct form *velocity, *rate; /* v, and its derivative; that has highest derivatives */
 	const struct form *force, *rest;    /* F, and up to what it sticks */
+	/* Per coordinate and multiplier: the derivative of F by its highest derivative, and by itself; NULL: F reads
+	 * none, else it is solved for with them */
+	struct form **by;
+	bool curved;                /* these depend on multipliers */
 	struct moving_contact *moving; /* NULL: what its force does is constant */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */

@@ -61,13 +61,6 @@ static void make_hold(struct constraints *all, int index)
 	add_twin(&w->x->function[d.function], d.breakpoint);
 }
 
-/* A force that may become negative counts as 0 there. */
-static int force_sequence(struct sequencing *w, const struct form *force)
-{
-	int made = sequence_of_form(w, force);
-	return never_falls_below(force) ? made : positive_sequence(w, force, made);
-}
-
 /* What it can hold, no less than its force: S > F ? S : F */
 static int rest_sequence(struct sequencing *w, const struct drag *drag)
 {
@@ -89,13 +82,9 @@ static void make_slip(struct constraints *all, int index)
 	struct sequencing *w = all->w;
 	struct constraint *h = &all->constraint[index];
 	const struct series_hold *hold = &all->c->hold[index];
-	if (h->drag == NONE)
-		return;
-	const struct drag *drag = &w->step->model->contacts.drag[h->drag];
-	int force = force_sequence(w, drag->force), back = minus_sequence(w, force);
-	h->slips = new_sequence(w, (struct sequence){
-		.kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_STATE, .state = NONE, .switching = hold->function,
-		.breakpoint = hold->breakpoint, .a = hold->above ? force : back, .b = hold->above ? back : force });
+	if (h->drag != NONE && !w->step->model->contacts.drag[h->drag].by)
+		h->slips = along_sliding(w, hold,
+					 force_sequence(w, w->step->model->contacts.drag[h->drag].force));
 }
 
 /* ---- forces ---- */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Who holds beside a series, how the force of each acts on the others, and forces of those that hold together. Factors
- * are numbers; those of mechanisms, whose mass matrix or whose directions depend on the state, are sequences. */
+/* Who holds beside a series, how the force of each acts on the others, without them what
+ * their rates are. Factors are numbers; those of mechanisms, whose mass matrix or whose directions depend on the state,
+ * are sequences. */
 #include "model/contacts/friction.h"
 #include "model/contacts/contacts.h"
 #include "step/series/switching.h"
@@ -9,7 +10,7 @@
 
 /* ---- factors ---- */
 
-static struct entry *entries(int count)
+struct entry *entries_new(int count)
 {
 	struct entry *all = ARRAY(struct entry, count);
 	for (int i = 0; i < count; i++) {
@@ -19,7 +20,7 @@ static struct entry *entries(int count)
 	return all;
 }
 
-static bool is_zero(const struct entry *e)
+bool is_zero_entry(const struct entry *e)
 {
 	return e->sequence == NONE && mpq_sgn(e->number) == 0;
 }
@@ -29,7 +30,7 @@ bool is_number_entry(const struct entry *e)
 	return e->sequence == NONE;
 }
 
-static void set_entry(struct sequencing *w, const struct form *form, struct entry *entry)
+void set_entry(struct sequencing *w, const struct form *form, struct entry *entry)
 {
 	RATIONAL part = ZERO;
 	if (!is_constant(form)) {
@@ -44,7 +45,7 @@ static void set_entry(struct sequencing *w, const struct form *form, struct entr
 	}
 }
 
-static void add_product(struct sum *sum, int a, int b, mpq_srcptr factor)
+void sum_add_product(struct sum *sum, int a, int b, mpq_srcptr factor)
 {
 	sum_add(sum, TERM_PRODUCT, a < b ? a : b, a < b ? b : a, factor);
 }
@@ -54,19 +55,19 @@ void sum_add_entry(struct sum *sum, int sequence, const struct entry *entry, mpq
 	RATIONAL part = ZERO;
 	mpq_mul(part, factor, entry->number);
 	if (entry->sequence != NONE)
-		add_product(sum, sequence, entry->sequence, factor);
+		sum_add_product(sum, sequence, entry->sequence, factor);
 	else if (mpq_sgn(part) != 0)
 		sum_add(sum, TERM_SEQUENCE, sequence, 0, part);
 }
 
 /* entry += the products of `count` pairs */
-static void dot_entries(struct sequencing *w, int count, const struct entry *a, const struct entry *b,
+void dot_entries(struct sequencing *w, int count, const struct entry *a, const struct entry *b,
 			struct entry *entry)
 {
 	RATIONAL one = RATIO(1, 1);
 	struct sum sum = { 0 };
 	for (int i = 0; i < count; i++) {
-		if (is_zero(&a[i]) || is_zero(&b[i]))
+		if (is_zero_entry(&a[i]) || is_zero_entry(&b[i]))
 			continue;
 		if (is_number_entry(&a[i]) && is_number_entry(&b[i]))
 			rational_addmul(entry->number, a[i].number, b[i].number);
@@ -99,9 +100,16 @@ int quotient_by_entry(struct sequencing *w, int a, const struct entry *below)
 	return sequence_of_sum(w, &sum);
 }
 
+/* A force that may become negative counts as 0 there. */
+int force_sequence(struct sequencing *w, const struct form *force)
+{
+	int made = sequence_of_form(w, force);
+	return never_falls_below(force) ? made : positive_sequence(w, force, made);
+}
+
 /* ---- who holds, and how each acts on the others ---- */
 
-static int rate_state(const struct sequencing *w, const struct basis *basis)
+int rate_state(const struct sequencing *w, const struct basis *basis)
 {
 	if (basis->kind != BASIS_COORD || basis->order < w->step->model->frame.coord[basis->index]->highest)
 		return NONE;
@@ -128,7 +136,7 @@ static void direction_of_drag(const struct sequencing *w, struct constraint *h, 
 static void gives_of(struct sequencing *w, struct constraint *h)
 {
 	const int n = w->system->n;
-	struct entry *mass = entries(n), *direction = ARRAY(struct entry, n);
+	struct entry *mass = entries_new(n), *direction = ARRAY(struct entry, n);
 	for (int j = 0; j < n; j++)
 		direction[j] = h->force_direction[w->system->velocity[j] >= 0 ? w->system->velocity[j] : j];
 	for (int e = 0; e < w->system->force_columns; e++) {
@@ -175,10 +183,10 @@ static struct constraint *add_constraint(struct constraints *all, const struct m
 	const int states = all->w->system->states;
 	struct constraint *h = MORE(all->constraint, all->constraints);
 	*h = (struct constraint){ .impact = NONE, .drag = NONE, .slips = NONE, .moving = moving,
-				  .force_direction = entries(states),
-				  .slope_direction = ARRAY(struct entry, states), .row = entries(states),
+				  .force_direction = entries_new(states),
+				  .slope_direction = ARRAY(struct entry, states), .row = entries_new(states),
 				  .sample = ARRAY(double, states),
-				  .gives = entries(all->w->system->force_columns) };
+				  .gives = entries_new(all->w->system->force_columns) };
 	return h;
 }
 
@@ -237,7 +245,7 @@ static void find_all_delassus(struct constraints *all)
 {
 	for (int i = 0; i < all->constraints; i++) {
 		struct constraint *h = &all->constraint[i];
-		h->delassus = entries(all->constraints);
+		h->delassus = entries_new(all->constraints);
 		for (int j = 0; j < all->constraints; j++)
 			dot_entries(all->w, all->w->system->states, h->row, all->constraint[j].force_direction,
 				    &h->delassus[j]);
@@ -247,7 +255,7 @@ static void find_all_delassus(struct constraints *all)
 
 static bool meets(const struct constraints *all, int i, int j)
 {
-	return !is_zero(&all->constraint[i].delassus[j]) || !is_zero(&all->constraint[j].delassus[i]);
+	return !is_zero_entry(&all->constraint[i].delassus[j]) || !is_zero_entry(&all->constraint[j].delassus[i]);
 }
 
 /* Those that act on each other, over others too, have one number. */
@@ -279,7 +287,7 @@ void find_constraints(struct constraints *all)
 /* ---- rates ---- */
 
 /* The slope of a state without what holds, once */
-static int bare_slope(struct sequencing *w, int state)
+int bare_slope(struct sequencing *w, int state)
 {
 	int *made = &w->x->contacts->bare[state];
 	if (*made == NONE) {
@@ -308,243 +316,4 @@ int bare_rate(struct sequencing *w, const struct constraint *h)
 			sum_add(&sum, TERM_SEQUENCE, bare_slope(w, state), 0, term->factor);
 	}
 	return sequence_of_sum(w, &sum);
-}
-
-/* ---- where they move: one system for the group, in which what does not hold has a row of its own ---- */
-
-int hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other)
-{
-	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_CHOICE, .choice = CHOICE_BY_HOLD, .state = NONE,
-						  .switching = hold->function, .breakpoint = hold->breakpoint,
-						  .a = held, .b = other });
-}
-
-/* `held` where a constraint holds and no conflict, of which it is the last, stands against that; else `other` */
-static int where_it_holds(const struct constraints *all, int index, int held, int other)
-{
-	struct sequencing *w = all->w;
-	const struct contacts *c = all->c;
-	if (held == other)
-		return held;
-	for (int k = 0; k < c->conflicts; k++) {
-		int all_hold = other;
-		if (c->conflict[k].set >> index != 1)
-			continue;
-		for (int i = 0; i < index; i++)
-			if (c->conflict[k].set >> i & 1)
-				all_hold = hold_choice(w, &c->hold[i], all_hold, held);
-		held = all_hold;
-	}
-	return hold_choice(w, &c->hold[index], held, other);
-}
-
-/* Accelerations of all equations that the group's mass matrices couple, then the forces of its members. A motion is
- * M q'' + sum of c force = f, and of a force n q'' + n' q' = 0 where it holds, else it is known. */
-struct joined {
-	const struct constraints *all;
-	int members, *member;
-	int accelerations;
-	int *coord;                 /* per acceleration; a multiplier has none, and a number beyond the coordinates */
-	bool *coupled;              /* per state: its slope is one of them */
-	struct linear_equations *e;
-};
-
-static int state_of_coord(const struct sequencing *w, int coord)
-{
-	int velocity = coord < w->system->n ? w->system->velocity[coord] : NONE;
-	return coord >= w->system->n ? NONE : velocity >= 0 ? velocity : coord;
-}
-
-static bool acts_on(const struct joined *g, const struct linear_system *mass)
-{
-	bool any = false;
-	for (int i = 0; i < mass->n; i++) {
-		int state = state_of_coord(g->all->w, mass->written->highest[i].index);
-		for (int k = 0; k < g->members && state != NONE; k++) {
-			const struct constraint *h = &g->all->constraint[g->member[k]];
-			any = any || !is_zero(&h->row[state]) || !is_zero(&h->force_direction[state]);
-		}
-	}
-	return any;
-}
-
-static void add_mass(struct joined *g, const struct linear_system *mass)
-{
-	struct sequencing *w = g->all->w;
-	struct linear_equations *e = g->e;
-	const int first = g->accelerations;
-	for (int i = 0; i < mass->n; i++) {
-		const int row = first + i, coord = mass->written->highest[i].index;
-		*MORE(g->coord, g->accelerations) = coord;
-		e->right[row] = mass->f[i]->terms ? sequence_of_form(w, mass->f[i]) : NONE;
-		for (int j = 0; j < mass->n; j++)
-			if (mass->M[i * mass->n + j]->terms)
-				e->matrix[row * e->n + first + j] = sequence_of_form(w, mass->M[i * mass->n + j]);
-		if (state_of_coord(w, coord) != NONE)
-			g->coupled[state_of_coord(w, coord)] = true;
-	}
-}
-
-static int force_on(const struct joined *g, int acceleration, int k)
-{
-	const struct moving_contact *moving = g->all->constraint[g->member[k]].moving;
-	const int coord = g->coord[acceleration];
-	const struct form *force = moving && coord < g->all->w->system->n ? moving->force[coord] : NULL;
-	return force && force->terms ? sequence_of_form(g->all->w, force) : NONE;
-}
-
-/* What the slopes of the other states are, as they stand in its rate: by a force of 1, or without any */
-static void answer_beside(const struct joined *g, int k, const struct constraint *of, struct entry *answer)
-{
-	struct sequencing *w = g->all->w;
-	const struct constraint *h = &g->all->constraint[g->member[k]];
-	struct entry *beside = entries(w->system->states);
-	for (int i = 0; i < w->system->states; i++)
-		if (!g->coupled[i] && of)
-			beside[i] = of->force_direction[i];
-		else if (!g->coupled[i] && !is_zero(&h->row[i]))
-			beside[i].sequence = bare_slope(w, i);
-	dot_entries(w, w->system->states, h->row, beside, answer);
-}
-
-/* The rate without what the system solves for, reversed */
-static int right_where_held(const struct joined *g, int k)
-{
-	struct sequencing *w = g->all->w;
-	const struct constraint *h = &g->all->constraint[g->member[k]];
-	struct entry *beside = entries(1);
-	struct sum sum = { 0 };
-	RATIONAL minus = RATIO(-1, 1);
-	answer_beside(g, k, NULL, beside);
-	sum_add(&sum, TERM_SEQUENCE, entry_sequence(w, beside), 0, minus);
-	if (h->moving)
-		sum_add_form(w, &sum, h->moving->rest, minus);
-	for (int i = 0; i < h->rate->terms && !h->moving; i++) {
-		struct form single = { 1, &h->rate->term[i], 0 };
-		if (rate_state(w, &h->rate->term[i].basis) == NONE)
-			sum_add_form(w, &sum, &single, minus);
-	}
-	return sum_sequence(w, &sum);
-}
-
-static void add_member(struct joined *g, int k)
-{
-	const struct constraints *all = g->all;
-	struct linear_equations *e = g->e;
-	const struct constraint *h = &all->constraint[g->member[k]];
-	const int row = g->accelerations + k, one = sequence_of_form(all->w, form_number(1));
-	for (int i = 0; i < g->accelerations; i++) {
-		int state = state_of_coord(all->w, g->coord[i]);
-		if (state != NONE && !is_zero(&h->row[state]))
-			e->matrix[row * e->n + i] = where_it_holds(all, g->member[k],
-								   entry_sequence(all->w, &h->row[state]), all->none);
-		e->matrix[i * e->n + row] = force_on(g, i, k);
-	}
-	for (int l = 0; l < g->members; l++) {
-		struct entry *answer = entries(1);
-		answer_beside(g, k, &all->constraint[g->member[l]], answer);
-		if (l == k || !is_zero(answer))
-			e->matrix[row * e->n + g->accelerations + l] = where_it_holds(
-				all, g->member[k], entry_sequence(all->w, answer), l == k ? one : all->none);
-	}
-	e->right[row] = where_it_holds(all, g->member[k], right_where_held(g, k),
-				       h->slips == NONE ? all->none : h->slips);
-}
-
-static int residual_of_motion(const struct joined *g, const struct form *written, int row)
-{
-	struct sequencing *w = g->all->w;
-	struct sum sum = { 0 };
-	RATIONAL one = RATIO(1, 1);
-	sum_add_form(w, &sum, written, one);
-	for (int k = 0; k < g->members; k++) {
-		const struct moving_contact *moving = g->all->constraint[g->member[k]].moving;
-		const int coord = g->coord[row], force = g->all->constraint[g->member[k]].force;
-		struct entry *factor = entries(1);
-		if (!moving || coord >= w->system->n)
-			continue;
-		set_entry(w, moving->force[coord], factor);
-		sum_add_entry(&sum, force, factor, one);
-	}
-	return sequence_of_sum(w, &sum);
-}
-
-static int residual_of_member(const struct joined *g, int k)
-{
-	struct sequencing *w = g->all->w;
-	struct constraint *h = &g->all->constraint[g->member[k]];
-	struct sum known = { 0 };
-	RATIONAL one = RATIO(1, 1), minus = RATIO(-1, 1);
-	sum_add(&known, TERM_SEQUENCE, h->force, 0, one);
-	if (h->slips != NONE)
-		sum_add(&known, TERM_SEQUENCE, h->slips, 0, minus);
-	h->bare = sequence_of_form(w, h->rate);
-	return where_it_holds(g->all, g->member[k], h->bare, sequence_of_sum(w, &known));
-}
-
-/* Highest derivatives of all coordinates, with the forces of the group */
-static void find_highest(const struct joined *g)
-{
-	struct sequencing *w = g->all->w;
-	RATIONAL one = RATIO(1, 1);
-	for (int i = 0; i < g->accelerations; i++) {
-		w->highest[g->coord[i]] = g->e->first + i;
-		const int state = state_of_coord(w, g->coord[i]);
-		if (state == NONE)
-			continue;
-		g->all->c->bare[state] = g->e->first + i;
-		g->all->c->solved[state] = true;
-	}
-	for (int j = 0; j < w->system->n; j++) {
-		const int state = state_of_coord(w, j);
-		struct sum slope = { 0 };
-		if (g->coupled[state])
-			continue;
-		sum_add(&slope, TERM_SEQUENCE, bare_slope(w, state), 0, one);
-		for (int k = 0; k < g->members; k++)
-			sum_add_entry(&slope, g->all->constraint[g->member[k]].force,
-				      &g->all->constraint[g->member[k]].force_direction[state], one);
-		w->highest[j] = sequence_of_sum(w, &slope);
-	}
-}
-
-void solve_group(const struct constraints *all, int members, int *member)
-{
-	struct sequencing *w = all->w;
-	const struct model_contacts *contacts = &w->step->model->contacts;
-	struct linear_equations *e = NEW(struct linear_equations);
-	struct joined g = { .all = all, .members = members, .member = member, .e = e,
-			   .coupled = ARRAY(bool, w->system->states) };
-	e->n = members;
-	for (int i = 0; i < contacts->masses; i++)
-		e->n += acts_on(&g, contacts->mass[i]) ? contacts->mass[i]->n : 0;
-	e->number = w->x->equations++;
-	e->matrix = ARRAY(int, e->n * e->n);
-	e->right = ARRAY(int, e->n);
-	e->residual = ARRAY(int, e->n);
-	for (int i = 0; i < e->n * e->n; i++)
-		e->matrix[i] = NONE;
-	for (int i = 0; i < contacts->masses; i++)
-		if (acts_on(&g, contacts->mass[i]))
-			add_mass(&g, contacts->mass[i]);
-	for (int k = 0; k < members; k++)
-		add_member(&g, k);
-	e->first = w->x->count;
-	for (int i = 0; i < e->n; i++)
-		new_sequence(w, (struct sequence){ .kind = SEQUENCE_SOLUTION, .state = NONE, .a = NONE, .b = NONE,
-						   .equations = e, .component = i });
-	for (int k = 0; k < members; k++)
-		all->constraint[member[k]].force = e->first + g.accelerations + k;
-	find_highest(&g);
-	for (int i = 0, row = 0; i < contacts->masses; i++)
-		for (int j = 0; j < contacts->mass[i]->n && acts_on(&g, contacts->mass[i]); j++, row++)
-			e->residual[row] = residual_of_motion(&g, contacts->mass[i]->written->residual[j], row);
-	for (int k = 0; k < members; k++) {
-		struct constraint *h = &all->constraint[member[k]];
-		h->solved = true;
-		e->residual[g.accelerations + k] = residual_of_member(&g, k);
-		for (int i = 0; i < w->system->states; i++)     /* their slopes are solved for */
-			if (g.coupled[i])
-				h->slope_direction[i] = entries(1)[0];
-	}
 }

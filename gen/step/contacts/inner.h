@@ -35,12 +35,24 @@ struct constraints {
 };
 void find_constraints(struct constraints *all);
 int  bare_rate(struct sequencing *w, const struct constraint *h); /* without what holds: a sequence */
-int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
-/* Forces of those that act on each other */
-void solve_group(const struct constraints *all, int members, int *member);
+int  force_sequence(struct sequencing *w, const struct form *force); /* of friction, no less than 0 */
 bool is_number_entry(const struct entry *e);
 void sum_add_entry(struct sum *sum, int sequence, const struct entry *entry, mpq_srcptr factor);
 int  entry_sequence(struct sequencing *w, const struct entry *entry);
 int  quotient_by_entry(struct sequencing *w, int a, const struct entry *below);
+struct entry *entries_new(int count);
+bool is_zero_entry(const struct entry *e);
+void set_entry(struct sequencing *w, const struct form *form, struct entry *entry);
+void sum_add_product(struct sum *sum, int a, int b, mpq_srcptr factor);
+/* entry += the products of `count` pairs */
+void dot_entries(struct sequencing *w, int count, const struct entry *a, const struct entry *b, struct entry *entry);
+int  bare_slope(struct sequencing *w, int state);           /* without what holds, once */
+int  rate_state(const struct sequencing *w, const struct basis *basis); /* whose slope it is; NONE */
+
+/* ---- group.c: forces of those that act on each other ---- */
+
+int  along_sliding(struct sequencing *w, const struct series_hold *hold, int force); /* with the velocity's sign */
+int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
+void solve_group(const struct constraints *all, int members, int *member);
 
 #endif

@@ -327,6 +327,17 @@ static tape_ref update_ahead(struct recurrences *r, int sequence, int k)
 	return s->kind == SEQUENCE_INTEGRAL ? update_of_sum(r, s, k - 1, update) : update_of_sum(r, s, k, update_ahead);
 }
 
+/* (a - c_0 b)/b_0, a/(2 c_0), exponent c_0 a/a_0, of what changes by a and b */
+static tape_ref update_of_ratio(struct recurrences *r, int sequence, const struct sequence *s, int k)
+{
+	tape_ref a = s->a == NONE ? TAPE_NONE : update(r, s->a, k);
+	if (s->kind == SEQUENCE_QUOTIENT)
+		a = less(r->t, a, times(r->t, recurrence(r, sequence, 0), update(r, s->b, k)));
+	if (s->kind == SEQUENCE_POWER)
+		a = tape_scaled(r->t, recurrence_rounded(s->exponent), times(r->t, a, recurrence(r, sequence, 0)));
+	return over(r, sequence, a);
+}
+
 static tape_ref update(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
@@ -337,10 +348,10 @@ static tape_ref update(struct recurrences *r, int sequence, int k)
 		return TAPE_NONE;
 	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = s->kind == SEQUENCE_QUOTIENT ? over(r, sequence, update(r, s->a, k))
-		       : s->kind == SEQUENCE_RATE   ? shifted(r, s, k, update_ahead)
+		*ref = s->kind == SEQUENCE_RATE     ? shifted(r, s, k, update_ahead)
 		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
-						    : update_of_sum(r, s, k, update);
+		       : s->kind == SEQUENCE_SUM    ? update_of_sum(r, s, k, update)
+						    : update_of_ratio(r, sequence, s, k);
 	return *ref;
 }
 
