@@ -78,7 +78,8 @@ static bool acts_on(const struct joined *g, const struct linear_system *mass)
 			const struct constraint *h = &g->all->constraint[g->member[k]];
 			const struct drag *drag = reaction_of(g, k);
 			any = any || (drag && drag->by[mass->written->highest[i].index]->terms) ||
-			      (state != NONE && (!is_zero_entry(&h->row[state]) || !is_zero_entry(&h->force_direction[state])));
+			      (state != NONE && !(is_zero_entry(&h->row[state]) &&
+						  is_zero_entry(&h->force_direction[state])));
 		}
 	}
 	return any;
