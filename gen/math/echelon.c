@@ -16,29 +16,38 @@ struct echelon echelon_new(int width)
 	return (struct echelon){ width, 0, ARRAY(mpq_t *, width), ARRAY(int, width) };
 }
 
+/* Nothing stays of what a row has at the pivot of another. */
+static void clear_pivot(const struct echelon *e, mpq_t *row, int by)
+{
+	RATIONAL factor = ZERO;
+	mpq_set(factor, row[e->pivot[by]]);
+	if (mpq_sgn(factor) != 0)
+		rational_subtract_row(e->width, row, e->row[by], factor);
+}
+
+void echelon_pivot(struct echelon *e, int r, int pivot)
+{
+	RATIONAL scale = ZERO;
+	mpq_set(scale, e->row[r][pivot]);
+	for (int j = 0; j < e->width; j++)
+		mpq_div(e->row[r][j], e->row[r][j], scale);
+	e->pivot[r] = pivot;
+	for (int i = 0; i < e->rank; i++)
+		if (i != r)
+			clear_pivot(e, e->row[i], r);
+}
+
 void echelon_add(struct echelon *e, mpq_t *row)
 {
 	int pivot = 0;
-	RATIONAL factor = ZERO;
-	for (int r = 0; r < e->rank; r++) {
-		mpq_set(factor, row[e->pivot[r]]);
-		if (mpq_sgn(factor) != 0)
-			rational_subtract_row(e->width, row, e->row[r], factor);
-	}
+	for (int r = 0; r < e->rank; r++)
+		clear_pivot(e, row, r);
 	while (pivot < e->width && mpq_sgn(row[pivot]) == 0)
 		pivot++;
-	if (pivot < e->width) {
-		mpq_inv(factor, row[pivot]);
-		for (int j = 0; j < e->width; j++)
-			mpq_mul(row[j], row[j], factor);
-		for (int r = 0; r < e->rank; r++) {
-			mpq_set(factor, e->row[r][pivot]);
-			if (mpq_sgn(factor) != 0)
-				rational_subtract_row(e->width, e->row[r], row, factor);
-		}
-		e->row[e->rank] = row;
-		e->pivot[e->rank++] = pivot;
-	}
+	if (pivot == e->width)
+		return;
+	e->row[e->rank] = row;
+	echelon_pivot(e, e->rank++, pivot);
 }
 
 int echelon_null_space(const struct echelon *e, mpq_t ***basis)

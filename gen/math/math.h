@@ -34,6 +34,7 @@ struct echelon {                    /* reduced: a pivot stands alone in its colu
 void rational_subtract_row(int n, mpq_t *target, const mpq_t *row, mpq_srcptr factor); /* target - factor row */
 struct echelon echelon_new(int width);
 void echelon_add(struct echelon *e, mpq_t *row);            /* `row` is used up */
+void echelon_pivot(struct echelon *e, int r, int pivot);    /* row r gets another pivot */
 /* A basis of what all rows annihilate: one vector for each column without pivot, 1 there; returns how many */
 int  echelon_null_space(const struct echelon *e, mpq_t ***basis);
 

@@ -14,88 +14,44 @@
 #include <string.h>
 
 struct observable {
-	int states, rank;
+	int states;
 	const mpq_t *A;
-	mpq_t *row;                 /* rank x states */
-	int *pivot;                 /* the state of each row's own */
+	struct echelon space;       /* the state of each row's own is its pivot */
+	mpq_t *row;                 /* in the end: rank x states */
 };
-
-static mpq_t *row_of(const struct observable *o, int r)
-{
-	return o->row + (size_t)r * (size_t)o->states;
-}
-
-/* Of what a row has at the pivot of another, nothing stays. */
-static void clear_pivot(const struct observable *o, mpq_t *row, int by)
-{
-	const mpq_t *other = row_of(o, by);
-	RATIONAL factor = ZERO;
-	mpq_set(factor, row[o->pivot[by]]);
-	for (int j = 0; j < o->states && mpq_sgn(factor) != 0; j++)
-		rational_submul(row[j], factor, other[j]);
-}
-
-static void set_pivot(struct observable *o, int r, int pivot)
-{
-	mpq_t *row = row_of(o, r);
-	RATIONAL scale = ZERO;
-	mpq_set(scale, row[pivot]);
-	for (int j = 0; j < o->states; j++)
-		mpq_div(row[j], row[j], scale);
-	o->pivot[r] = pivot;
-	for (int i = 0; i < o->rank; i++)
-		if (i != r)
-			clear_pivot(o, row_of(o, i), r);
-}
-
-/* If it is new */
-static void add_row(struct observable *o, const mpq_t *row)
-{
-	int pivot = 0;
-	if (o->rank == o->states)
-		return;
-	mpq_t *rest = row_of(o, o->rank);
-	for (int j = 0; j < o->states; j++)
-		mpq_set(rest[j], row[j]);
-	for (int r = 0; r < o->rank; r++)
-		clear_pivot(o, rest, r);
-	while (pivot < o->states && mpq_sgn(rest[pivot]) == 0)
-		pivot++;
-	if (pivot < o->states)
-		set_pivot(o, o->rank++, pivot);
-}
 
 /* Pivots are exchanged while an entry is above 2, each of which at least doubles a minor of T that is bounded (Knuth,
  * Semi-optimal bases for linear dependencies, 1985). The rows start as the space's own echelon form, so that what they
  * become depends on the space alone. */
-static void make_small(struct observable *o)
+static void make_small(struct echelon *e)
 {
 	int large;
 	do {
 		double most = 2;
 		large = -1;
-		for (int i = 0; i < o->rank * o->states; i++)
-			if (fabs(mpq_get_d(o->row[i])) > most) {
-				most = fabs(mpq_get_d(o->row[i]));
-				large = i;
-			}
+		for (int i = 0; i < e->rank * e->width; i++) {
+			const double size = fabs(mpq_get_d(e->row[i / e->width][i % e->width]));
+			large = size > most ? i : large;
+			most = fmax(most, size);
+		}
 		if (large >= 0)
-			set_pivot(o, large / o->states, large % o->states);
+			echelon_pivot(e, large / e->width, large % e->width);
 	} while (large >= 0);
 }
 
 /* By the states that are their own */
-static void sort_rows(struct observable *o)
+static void sort_rows(struct echelon *e)
 {
-	for (int r = 0; r < o->rank; r++)
-		for (int i = r + 1; i < o->rank; i++) {
-			int pivot = o->pivot[r];
-			if (o->pivot[i] > pivot)
+	for (int r = 0; r < e->rank; r++)
+		for (int i = r + 1; i < e->rank; i++) {
+			const int pivot = e->pivot[r];
+			mpq_t *const row = e->row[r];
+			if (e->pivot[i] > pivot)
 				continue;
-			o->pivot[r] = o->pivot[i];
-			o->pivot[i] = pivot;
-			for (int j = 0; j < o->states; j++)
-				mpq_swap(row_of(o, r)[j], row_of(o, i)[j]);
+			e->pivot[r] = e->pivot[i];
+			e->row[r] = e->row[i];
+			e->pivot[i] = pivot;
+			e->row[i] = row;
 		}
 }
 
@@ -106,10 +62,11 @@ static void see_function(struct observable *o, const struct model *model, const 
 {
 	struct reads reads = reads_of(model, 1, &form);
 	for (int i = 0; i < model->system.states; i++) {
-		RATIONALS *row = rationals(o->states);
+		if (!reads.state[i])
+			continue;
+		mpq_t *row = rationals(o->states);
 		mpq_set_ui(row[i], 1, 1);
-		if (reads.state[i])
-			add_row(o, row);
+		echelon_add(&o->space, row);
 	}
 }
 
@@ -118,23 +75,25 @@ static struct observable observe(const struct model *model)
 	size_t n = (size_t)model->system.states;
 	struct observable o = { .states = model->system.states,
 				.A = state_matrix(&model->system, false),
-				.row = rationals(n * n),
-				.pivot = ARRAY(int, n) };
+				.space = echelon_new(model->system.states) };
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
 		if (output->left)
 			see_function(&o, model, output->left);
 		if (output->form || !output->value)
-			add_row(&o, output->state);
+			echelon_add(&o.space, rationals_copied(n, output->state));
 	}
 	/* A row changes by later ones alone, whose derivatives are seen with them. */
-	for (int r = 0; r < o.rank; r++) {
-		RATIONALS *derivative = rationals(n);
-		rational_product(1, o.states, o.states, row_of(&o, r), o.A, derivative);
-		add_row(&o, derivative);
+	for (int r = 0; r < o.space.rank; r++) {
+		mpq_t *derivative = rationals(n);
+		rational_product(1, o.states, o.states, o.space.row[r], o.A, derivative);
+		echelon_add(&o.space, derivative);
 	}
-	make_small(&o);
-	sort_rows(&o);
+	make_small(&o.space);
+	sort_rows(&o.space);
+	o.row = rationals((size_t)o.space.rank * n);
+	for (int i = 0; i < o.space.rank * o.states; i++)
+		mpq_set(o.row[i], o.space.row[i / o.states][i % o.states]);
 	return o;
 }
 
@@ -142,9 +101,9 @@ static struct observable observe(const struct model *model)
 
 static mpq_t *coefficients_of(const struct observable *o, const mpq_t *row)
 {
-	mpq_t *coefficient = rationals(o->rank);
-	for (int r = 0; r < o->rank; r++)
-		mpq_set(coefficient[r], row[o->pivot[r]]);
+	mpq_t *coefficient = rationals(o->space.rank);
+	for (int r = 0; r < o->space.rank; r++)
+		mpq_set(coefficient[r], row[o->space.pivot[r]]);
 	return coefficient;
 }
 
@@ -155,16 +114,16 @@ static void project_force(const void *context, const mpq_t *force, mpq_t *reduce
 {
 	const struct projecting *p = context;
 	RATIONALS *slopes = slopes_by_force(p->written, p->inverse, force);
-	rational_product(p->o->rank, p->o->states, 1, p->o->row, slopes, reduced);
+	rational_product(p->o->space.rank, p->o->states, 1, p->o->row, slopes, reduced);
 }
 
 static struct linear project_system(const struct observable *o, const struct linear *written)
 {
-	int r = o->rank;
+	int r = o->space.rank;
 	mpq_t *A = rationals((size_t)r * (size_t)r), *derivative = rationals((size_t)r * (size_t)o->states);
 	rational_product(r, o->states, o->states, o->row, o->A, derivative);
 	for (int i = 0; i < r * r; i++)
-		mpq_set(A[i], derivative[i / r * o->states + o->pivot[i % r]]);
+		mpq_set(A[i], derivative[i / r * o->states + o->space.pivot[i % r]]);
 	struct linear system = first_order_system(r, A);
 	const struct projecting projecting = { o, written, inverse_of_leading(written) };
 	take_forces(&system, written, r, project_force, &projecting);
@@ -177,7 +136,7 @@ static bool is_written(const struct observable *o, int r)
 {
 	int entries = 0;
 	for (int j = 0; j < o->states; j++)
-		entries += mpq_sgn(row_of(o, r)[j]) != 0;
+		entries += mpq_sgn(o->space.row[r][j]) != 0;
 	return entries == 1;
 }
 
@@ -215,10 +174,10 @@ static const char *name_of(const struct observable *o, const struct model *reduc
 {
 	const struct model *model = reduced->written;
 	if (is_written(o, r))
-		return model->names.state[o->pivot[r]];
+		return model->names.state[o->space.pivot[r]];
 	for (int i = 0; i < model->outputs; i++)
 		if (is_position(model, &model->output[i]) &&
-		    rationals_equal((size_t)o->states, row_of(o, r), model->output[i].state))
+		    rationals_equal((size_t)o->states, o->space.row[r], model->output[i].state))
 			return model->output[i].name;
 	for (int i = 0; i < r; i++)
 		if (is_derivative(&reduced->system, i, r))
@@ -234,9 +193,9 @@ static void place_states(const struct observable *o, struct model *reduced)
 	reduction->dropped_name = ARRAY(const char *, o->states);
 	for (int j = 0; j < o->states; j++)
 		reduction->place[j] = -1;
-	for (int r = 0; r < o->rank; r++)
+	for (int r = 0; r < o->space.rank; r++)
 		if (is_written(o, r))
-			reduction->place[o->pivot[r]] = r;
+			reduction->place[o->space.pivot[r]] = r;
 	for (int j = 0; j < o->states; j++)
 		if (reduction->place[j] < 0)
 			reduction->dropped_name[reduction->dropped++] = reduced->written->names.state[j];
@@ -247,10 +206,11 @@ struct model *model_reduce(struct model *model)
 	if (!model->request.reduce)
 		return model;
 	struct observable o = observe(model);
-	model->reduction.irreducible = o.rank == model->system.states;
+	const int rank = o.space.rank;
+	model->reduction.irreducible = rank == model->system.states;
 	if (model->reduction.irreducible)
 		return model;
-	if (o.rank == 0) {
+	if (rank == 0) {
 		say_error(model->output[0].value->start, "without --reduce all states are kept",
 			  "--reduce would leave no state: no output depends on one");
 		return NULL;
@@ -258,14 +218,14 @@ struct model *model_reduce(struct model *model)
 	struct model *reduced = NEW(struct model);
 	*reduced = *model;
 	reduced->written = model;
-	reduced->n = o.rank;
+	reduced->n = rank;
 	reduced->system = project_system(&o, &model->system);
-	reduced->names.state = reduced->names.coord = ARRAY(const char *, o.rank);
-	for (int r = 0; r < o.rank; r++)
+	reduced->names.state = reduced->names.coord = ARRAY(const char *, rank);
+	for (int r = 0; r < rank; r++)
 		reduced->names.state[r] = name_of(&o, reduced, r);
-	reduced->initial = rationals(o.rank);
-	rational_product(o.rank, o.states, 1, o.row, model->initial, reduced->initial);
-	reduced->equations.highest = ARRAY(struct output *, o.rank); /* none: that was refused */
+	reduced->initial = rationals(rank);
+	rational_product(rank, o.states, 1, o.row, model->initial, reduced->initial);
+	reduced->equations.highest = ARRAY(struct output *, rank); /* none: that was refused */
 	reduced->output = ARRAY(struct output, model->outputs);
 	for (int i = 0; i < model->outputs; i++) {
 		reduced->output[i] = model->output[i];
