@@ -402,8 +402,7 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 	return worst;
 }
 
-/* Of those that are known, the most exact */
-static const struct alternative *most_exact(const struct choice *choice, double most)
+const struct alternative *most_exact(const struct choice *choice, double most)
 {
 	const struct alternative *best = NULL;
 	for (int i = 0; i < choice->alternatives; i++) {

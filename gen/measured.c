@@ -151,14 +151,9 @@ static void choose(struct measuring *m)
 
 static void report_unmet(const struct measuring *m)
 {
-	const struct alternative *best = NULL, *any = NULL;
+	const struct alternative *best = most_exact(m->choice, HUGE_VAL);
+	const struct alternative *any = m->choice->alternatives > 0 ? m->choice->alternative : NULL;
 	const struct place at = m->model->needs.requirement[0].need->at;
-	for (int i = 0; i < m->choice->alternatives; i++) {
-		const struct alternative *a = &m->choice->alternative[i];
-		any = any ? any : a;
-		if (!a->refused && !a->why && (!best || a->error_ratio < best->error_ratio))
-			best = a;
-	}
 	if (!best)
 		say_error(at, NULL, "the need cannot be measured: %s",
 			  any ? (any->refused ? any->refused : any->why) : "there is no scheme for the model");

@@ -2,11 +2,6 @@
 /* Linear equations with real and with complex matrices: elimination with partial pivoting. */
 #include "real.h"
 
-static real size_of(real x)
-{
-    return x < 0 ? -x : x;
-}
-
 int pl_factor(int n, real *A, int *pivot)
 {
     int i, j, k;
@@ -14,7 +9,7 @@ int pl_factor(int n, real *A, int *pivot)
         int best = k;
         real inverse;
         for (i = k + 1; i < n; i++) {
-            if (size_of(A[i * n + k]) > size_of(A[best * n + k])) {
+            if (pl_magnitude(A[i * n + k]) > pl_magnitude(A[best * n + k])) {
                 best = i;
             }
         }
@@ -24,7 +19,7 @@ int pl_factor(int n, real *A, int *pivot)
             A[k * n + j] = A[best * n + j];
             A[best * n + j] = kept;
         }
-        if (!(size_of(A[k * n + k]) > 0)) {
+        if (!(pl_magnitude(A[k * n + k]) > 0)) {
             return 0;
         }
         inverse = 1 / A[k * n + k];
@@ -78,7 +73,7 @@ static void multiply_by(real *a, const real *b)
 
 static real complex_size(const real *a)
 {
-    return size_of(a[0]) + size_of(a[1]);
+    return pl_magnitude(a[0]) + pl_magnitude(a[1]);
 }
 
 /* 1/a, scaled so that no square leaves the range */

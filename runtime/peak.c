@@ -7,11 +7,6 @@ enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96, M
 /* Of a step: a top is found once it is known so closely, where it is flat to rounding */
 #define NEAREST (REAL_DIGITS > 30 ? (real)1e-8 : (real)2e-4)
 
-static real size_of(real a)
-{
-    return a < 0 ? -a : a;
-}
-
 /* Not a number stays none. */
 static real larger(real a, real b)
 {
@@ -44,7 +39,7 @@ static void bound_derivatives(taylor *p)
     p->end_slope = p->c[1];
     p->second = p->third = p->fourth = 0;
     for (k = 2; k <= p->degree; k++) {
-        const real size = (real)(k * (k - 1)) * size_of(p->c[k]);
+        const real size = (real)(k * (k - 1)) * pl_magnitude(p->c[k]);
         p->end += p->c[k];
         p->end_slope += (real)k * p->c[k];
         p->second += size;
@@ -59,8 +54,9 @@ static real bound_of(const taylor *p)
 {
     const real a = p->c[0], d = p->end, b = a + p->c[1] / 3, c = d - p->end_slope / 3;
     const real ab = (a + b) / 2, bc = (b + c) / 2, cd = (c + d) / 2, left = (ab + bc) / 2, right = (bc + cd) / 2;
-    const real inner = larger(larger(size_of(left), size_of(right)), larger(size_of(ab), size_of(cd)));
-    return larger(larger(size_of(a), size_of(d)), inner) + p->fourth / 384;
+    const real halves = larger(pl_magnitude(left), pl_magnitude(right));
+    const real inner = larger(halves, larger(pl_magnitude(ab), pl_magnitude(cd)));
+    return larger(larger(pl_magnitude(a), pl_magnitude(d)), inner) + p->fourth / 384;
 }
 
 /* value[0], [1], [2]: p, p', p'' at s */
@@ -86,13 +82,13 @@ static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
         values_at(p, s, value);
         next = s - value[1] / value[2];
         next = next > a ? (next < b ? next : b) : a;
-        off = size_of(next - s);
-        if (off * off * size_of(value[2]) <= REAL_EPSILON / 4 * size_of(value[0])) {
+        off = pl_magnitude(next - s);
+        if (off * off * pl_magnitude(value[2]) <= REAL_EPSILON / 4 * pl_magnitude(value[0])) {
             break;
         }
         s = next;
     }
-    return size_of(value[0]);
+    return pl_magnitude(value[0]);
 }
 
 /* Between two points p is off its chord by at most (b - a)^2/8 max|p''|.  Where that may pass `peak`: one sign of p''
@@ -105,9 +101,9 @@ static real largest(const taylor *p, real peak)
     while (a < 1) {
         const real b = a + width, bend = width * width / 8 * p->second;
         values_at(p, b, at_b);
-        if (width > least && !(larger(size_of(at_a[0]), size_of(at_b[0])) + bend <= peak)) {
+        if (width > least && !(larger(pl_magnitude(at_a[0]), pl_magnitude(at_b[0])) + bend <= peak)) {
             values_at(p, a + width / 2, middle);
-            if (size_of(middle[2]) < p->third * width / 2) {
+            if (pl_magnitude(middle[2]) < p->third * width / 2) {
                 width /= 2;
                 continue;
             }
@@ -207,7 +203,7 @@ static int expand(const slopes *A, real d, real *x, taylor *p, real *work)
     int i, k, small = 0, size = A->size;
     for (i = 0; i < size; i++) {
         term[i] = x[i];
-        most[i] = size_of(x[i]);
+        most[i] = pl_magnitude(x[i]);
     }
     p->c[0] = output_of(A, x);
     for (k = 1; k <= MOST_TERMS && small < 2; k++) {
@@ -218,8 +214,8 @@ static int expand(const slopes *A, real d, real *x, taylor *p, real *work)
             const real now = slope_of(A, term, i, &from) * part;
             next[i] = now;
             x[i] += now;
-            most[i] = larger(most[i], size_of(now));
-            all &= size_of(now) <= REAL_EPSILON / 8 * most[i];
+            most[i] = larger(most[i], pl_magnitude(now));
+            all &= pl_magnitude(now) <= REAL_EPSILON / 8 * most[i];
         }
         term = next;
         next = done;
@@ -251,9 +247,9 @@ static real search(const slopes *A, real h, int halvings, const real *start, rea
         }
         bound_derivatives(&p);
         if (part + 1 < parts) {
-            peak = larger(peak, size_of(p.end));
+            peak = larger(peak, pl_magnitude(p.end));
         }
-        if (size_of(p.c[1]) < p.second && !(bound_of(&p) <= peak)) {      /* else it only rises, or stays below */
+        if (pl_magnitude(p.c[1]) < p.second && !(bound_of(&p) <= peak)) {      /* else it only rises, or stays below */
             peak = largest(&p, peak);
         }
     }
@@ -263,12 +259,12 @@ static real search(const slopes *A, real h, int halvings, const real *start, rea
 real pl_peak(int size, const real *A, const real *row, const real *bend, real h, const real *x, real end, real peak,
              real *work)
 {
-    const real most = larger(size_of(product(size, row, x)), size_of(end));
+    const real most = larger(pl_magnitude(product(size, row, x)), pl_magnitude(end));
     real off = 0, found = -1;
     slopes listed;
     int i;
     for (i = 0; i < size; i++) {
-        off += bend[i] * size_of(x[i]);
+        off += bend[i] * pl_magnitude(x[i]);
     }
     if (most + off <= peak) {
         return peak;
@@ -300,7 +296,7 @@ static void row_times(const slopes *s, const real *row, real *product, const rea
         const int i = all ? k / s->size : s->row[k], j = all ? k % s->size : s->column[k];
         const real value = all ? s->A[k] : s->value[k];
         product[j] += row[i] * value;
-        bound[j] += most[i] * size_of(value);
+        bound[j] += most[i] * pl_magnitude(value);
     }
 }
 
@@ -312,7 +308,7 @@ static int grow(const slopes *A, real d, real *row, real *sum, real *work)
     int j, k, small = 0;
     for (j = 0; j < size; j++) {
         term[j] = row[j];
-        sum[j] = most[j] = size_of(row[j]);
+        sum[j] = most[j] = pl_magnitude(row[j]);
     }
     for (k = 1; k <= MOST_TERMS && small < 2; k++) {
         const real part = d / (real)k;
@@ -362,7 +358,7 @@ static real bend_of(const pl_peak_values *l, int apart)
     real most = 0;
     int i;
     for (i = apart; i + apart <= PL_PEAK_TIMES; i += apart) {
-        most = larger(most, size_of((v[i + apart] - v[i]) - (v[i] - v[i - apart])));
+        most = larger(most, pl_magnitude((v[i + apart] - v[i]) - (v[i] - v[i - apart])));
     }
     return most;
 }
@@ -372,7 +368,7 @@ static real top_of(const pl_peak_values *l)
     real most = 0;
     int i;
     for (i = 0; i <= PL_PEAK_TIMES; i += l->apart) {
-        most = larger(most, size_of(l->value[i]));
+        most = larger(most, pl_magnitude(l->value[i]));
     }
     return most;
 }
@@ -394,18 +390,18 @@ static real next_try(pl_peak_values *l)
 {
     const real x = l->s[0], middle = (l->a + l->b) / 2, before = l->before;
     const real r = (x - l->s[1]) * (l->size[0] - l->size[2]), t = (x - l->s[2]) * (l->size[0] - l->size[1]);
-    const real sign = t > r ? -1 : 1, q = 2 * size_of(t - r), p = sign * ((x - l->s[2]) * t - (x - l->s[1]) * r);
-    if (size_of(x - middle) + (l->b - l->a) / 2 <= 2 * NEAREST || l->tries++ == MOST_TRIES) {
+    const real sign = t > r ? -1 : 1, q = 2 * pl_magnitude(t - r), p = sign * ((x - l->s[2]) * t - (x - l->s[1]) * r);
+    if (pl_magnitude(x - middle) + (l->b - l->a) / 2 <= 2 * NEAREST || l->tries++ == MOST_TRIES) {
         return -1;
     }
     l->before = l->moved;
-    if (size_of(p) < size_of(q * before / 2) && p > q * (l->a - x) && p < q * (l->b - x)) {
+    if (pl_magnitude(p) < pl_magnitude(q * before / 2) && p > q * (l->a - x) && p < q * (l->b - x)) {
         l->moved = p / q;
     } else {
         l->before = x < middle ? l->b - x : l->a - x;
         l->moved = (real)0.3819660113 * l->before;
     }
-    if (size_of(l->moved) < NEAREST) {
+    if (pl_magnitude(l->moved) < NEAREST) {
         return x + (l->moved > 0 ? NEAREST : -NEAREST);
     }
     return x + l->moved;
@@ -436,7 +432,7 @@ static void take_try(pl_peak_values *l, real s, real size)
     }
     if (best || size >= l->size[1]) {
         keep(l, best ? 0 : 1, s, size);
-    } else if (size >= l->size[2] || !(size_of(l->s[2] - l->s[1]) > 0)) {
+    } else if (size >= l->size[2] || !(pl_magnitude(l->s[2] - l->s[1]) > 0)) {
         keep(l, 2, s, size);
     }
 }
@@ -448,9 +444,9 @@ static void begin_top(pl_peak_values *l, int i)
     const int other = left < i ? left : right, last = right > i ? right : left;
     l->a = (real)left / PL_PEAK_TIMES;
     l->b = (real)right / PL_PEAK_TIMES;
-    keep(l, 0, (real)last / PL_PEAK_TIMES, size_of(l->value[last]));
-    keep(l, 0, (real)other / PL_PEAK_TIMES, size_of(l->value[other]));
-    keep(l, 0, (real)i / PL_PEAK_TIMES, size_of(l->value[i]));
+    keep(l, 0, (real)last / PL_PEAK_TIMES, pl_magnitude(l->value[last]));
+    keep(l, 0, (real)other / PL_PEAK_TIMES, pl_magnitude(l->value[other]));
+    keep(l, 0, (real)i / PL_PEAK_TIMES, pl_magnitude(l->value[i]));
     l->moved = l->before = l->b - l->a;
     l->tries = 0;
 }
@@ -461,8 +457,9 @@ static real next_top(pl_peak_values *l)
     const real slack = 2 * bend_of(l, l->apart);
     for (; l->top <= PL_PEAK_TIMES; l->top += l->apart) {
         const int i = l->top, left = i > 0 ? i - l->apart : i, right = i < PL_PEAK_TIMES ? i + l->apart : i;
-        const real size = size_of(l->value[i]);
-        if (size >= size_of(l->value[left]) && size >= size_of(l->value[right]) && !(size + slack <= l->peak)) {
+        const real size = pl_magnitude(l->value[i]);
+        if (size >= pl_magnitude(l->value[left]) && size >= pl_magnitude(l->value[right]) &&
+            !(size + slack <= l->peak)) {
             begin_top(l, i);
             l->top += l->apart;
             return l->at = next_try(l);
@@ -478,14 +475,14 @@ static real next_time(pl_peak_values *l)
 
 real pl_peak_begin(pl_peak_values *l, real begin, real end, real peak)
 {
-    const real most = larger(size_of(begin), size_of(end));
+    const real most = larger(pl_magnitude(begin), pl_magnitude(end));
     l->peak = larger(peak, most);
     l->value[0] = begin;
     l->value[PL_PEAK_TIMES] = end;
     l->apart = l->time = PL_PEAK_TIMES / 2;
     l->top = 0;
     if (!(begin - begin <= 0) || !(end - end <= 0) || !(peak - peak <= 0)) {       /* not finite */
-        l->peak = peak - peak <= 0 ? size_of(begin) + size_of(end) : peak;
+        l->peak = peak - peak <= 0 ? pl_magnitude(begin) + pl_magnitude(end) : peak;
         return -1;
     }
     return next_time(l);
@@ -496,9 +493,9 @@ real pl_peak_next(pl_peak_values *l, real value)
     if (!(value - value <= 0)) {
         return -1;
     }
-    l->peak = larger(l->peak, size_of(value));
+    l->peak = larger(l->peak, pl_magnitude(value));
     if (l->time > PL_PEAK_TIMES) {
-        take_try(l, l->at, size_of(value));
+        take_try(l, l->at, pl_magnitude(value));
         l->at = next_try(l);
         return l->at >= 0 ? l->at : next_top(l);
     }

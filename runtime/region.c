@@ -3,11 +3,6 @@
  * over x may change within one. */
 #include "two.h"
 
-static real magnitude(real a)
-{
-    return a < 0 ? -a : a;
-}
-
 /* ---- pieces ---- */
 
 /* Above the size of every pole of A h: of a matrix B of sizes, max (B v)_i / v_i for any v above 0 is such a bound, and
@@ -27,7 +22,7 @@ static real largest_turn(int n, const pl_two *A, real h, real *v, real *next)
         for (i = 0; i < n; i++) {
             real sum = shift * v[i];
             for (j = 0; j < n; j++) {
-                sum += magnitude(A[i * n + j].hi * h) * v[j];
+                sum += pl_magnitude(A[i * n + j].hi * h) * v[j];
             }
             next[i] = sum;
             if (!is_finite(sum)) {
@@ -112,7 +107,7 @@ real pl_region_large(int size, int halvings, const real *Phi, real most)
     real largest = 1;
     int i;
     for (i = 0; i < size * size; i++) {
-        largest = magnitude(Phi[i]) > largest ? magnitude(Phi[i]) : largest;
+        largest = pl_magnitude(Phi[i]) > largest ? pl_magnitude(Phi[i]) : largest;
     }
     return halvings > 1 ? 0 : most / largest;
 }
@@ -134,7 +129,7 @@ static void exponential(int n, const real *A, real tau, int sizes, real *E, real
             for (j = 0; j < n; j++) {
                 real sum = 0;
                 for (m = 0; m < n; m++) {
-                    sum += term[i * n + m] * (sizes ? magnitude(A[m * n + j]) : A[m * n + j]);
+                    sum += term[i * n + m] * (sizes ? pl_magnitude(A[m * n + j]) : A[m * n + j]);
                 }
                 next[i * n + j] = sum * tau / (real)k;
             }
@@ -163,7 +158,7 @@ static void times(int n, real *row, const real *A, int sizes, real *work)
     for (j = 0; j < n; j++) {
         work[j] = 0;
         for (i = 0; i < n; i++) {
-            work[j] += row[i] * (sizes ? magnitude(A[i * n + j]) : A[i * n + j]);
+            work[j] += row[i] * (sizes ? pl_magnitude(A[i * n + j]) : A[i * n + j]);
         }
     }
     for (j = 0; j < n; j++) {
@@ -187,7 +182,7 @@ static void bound_row(int n, const real *E, const real *most, real *row, real *l
         for (j = 0; j < n; j++) {
             real sum = 0;
             for (i = 0; i < n; i++) {
-                sum += (magnitude(row[i]) + lost[i]) * most[i * n + j];
+                sum += (pl_magnitude(row[i]) + lost[i]) * most[i * n + j];
             }
             sum *= factor * (1 + 64 * (real)n * REAL_EPSILON);
             if (!(sum <= bound[j])) {
@@ -213,7 +208,7 @@ void pl_region_bounds(int size, real d, const real *A, int rows, const real *row
     for (i = 0; i < rows; i++, row += n, slope += n) {
         for (j = 0; j < n; j++) {
             gone[j] = row[j];
-            sizes[j] = magnitude(row[j]);
+            sizes[j] = pl_magnitude(row[j]);
         }
         for (order = 1; order <= 4; order++) {
             times(n, gone, A, 0, more);
@@ -252,7 +247,7 @@ static real grown(const stride *s, int swapped, int i, int j)
     int k;
     for (k = 0; k < s->n; k++) {
         const int left = i * s->n + k, right = k * s->n + j, at = swapped ? right : left;
-        sum += magnitude(s->D[at] + (real)(at % (s->n + 1) == 0)) * s->most[swapped ? left : right];
+        sum += pl_magnitude(s->D[at] + (real)(at % (s->n + 1) == 0)) * s->most[swapped ? left : right];
     }
     return sum;
 }
@@ -300,7 +295,7 @@ static void reach_on(const stride *s, real from, real d, const reached *r, real 
         for (j = 0; j < n; j++) {
             real sum = 0, change = 0;
             for (i = 0; i < n; i++) {
-                sum += magnitude(r->row[i]) * s->most[i * n + j];
+                sum += pl_magnitude(r->row[i]) * s->most[i * n + j];
                 change += r->row[i] * s->D[i * n + j];
             }
             if (!(sum <= r->most[j])) {

@@ -23,11 +23,6 @@ static PL_APART pl_two quotient(pl_two a, pl_two b)
     return two_sum(q, (((a.hi - p.hi) - p.lo) + (a.lo - q * b.lo)) / b.hi);
 }
 
-static real magnitude(real a)
-{
-    return a < 0 ? -a : a;
-}
-
 static real larger(real a, real b)
 {
     return a > b ? a : b;
@@ -40,7 +35,7 @@ static real larger(real a, real b)
 static PL_APART pl_two reduced(pl_two sum, pl_two a, pl_two b)
 {
     const pl_two rest = normal(plus_product(sum, a, b));
-    return magnitude(rest.hi) < 8 * REAL_EPSILON * REAL_EPSILON * magnitude(sum.hi) ? two(0, 0) : rest;
+    return pl_magnitude(rest.hi) < 8 * REAL_EPSILON * REAL_EPSILON * pl_magnitude(sum.hi) ? two(0, 0) : rest;
 }
 
 static int finite_entries(int rows, int columns, int width, const pl_two *value)
@@ -190,7 +185,7 @@ static real norm_squared(int n, const pl_two *A, int stride, real tau, pl_two *B
 
     for (i = 0; i < n; i++) {
         for (j = 0; j < n; j++) {
-            B[i * n + j].hi = magnitude(A[i * stride + j].hi * tau);
+            B[i * n + j].hi = pl_magnitude(A[i * stride + j].hi * tau);
         }
     }
     for (sweep = 0; sweep < SWEEPS && changed; sweep++) {
@@ -384,10 +379,10 @@ static int cancelled(const layout *m, int halvings, const pl_two *X, const pl_tw
             for (j = from; j < to; j++) {
                 real sum = 0;
                 for (k = 0; k < (from < states ? states : size); k++) {
-                    sum += magnitude(X[i + k].hi * X[k * size + j].hi);
+                    sum += pl_magnitude(X[i + k].hi * X[k * size + j].hi);
                 }
-                left = larger(left, magnitude(D[i + j].hi));
-                first = larger(first, magnitude(X[i + j].hi));
+                left = larger(left, pl_magnitude(D[i + j].hi));
+                first = larger(first, pl_magnitude(X[i + j].hi));
                 second = larger(second, sum);
             }
         }
@@ -396,7 +391,7 @@ static int cancelled(const layout *m, int halvings, const pl_two *X, const pl_tw
             real term = 0;
             for (i = l * entries; i < l * entries + states * size; i += size) {
                 for (j = from; j < to; j++) {
-                    term = larger(term, magnitude(X[i + j].hi));
+                    term = larger(term, pl_magnitude(X[i + j].hi));
                 }
             }
             factor *= whole / (real)(l + 1);
@@ -499,8 +494,8 @@ int pl_ramp_cancels(int size, int states, const pl_two *D, int column, real h)
     int i;
     for (i = 0; i < states; i++) {
         const pl_two *const d = D + i * size + column;
-        most = larger(most, larger(magnitude(d[0].hi), magnitude(d[1].hi / h)));
-        before = larger(before, magnitude(d[0].hi - d[1].hi / h));
+        most = larger(most, larger(pl_magnitude(d[0].hi), pl_magnitude(d[1].hi / h)));
+        before = larger(before, pl_magnitude(d[0].hi - d[1].hi / h));
     }
     return 2 * most > 5 * before;
 }

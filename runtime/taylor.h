@@ -315,32 +315,44 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     PL(border)(s, u);
 }
 
-#elif PL_OVER > 1
+#elif PL_OVER > 1 || !(PL_PARTS || PL_STRAIGHT)
 
-/* A new series from here, over PL_OVER steps, and where it ends.  One that is not finite is not kept: all its steps
- * leave the state as it is. */
-static void PL(renew)(PL_TYPE *s, const real u[])
+/* A series from here, over PL_OVER steps, and where it ends; 0: that is not finite */
+static inline int PL(go_over)(PL_TYPE *s, const real u[], real c[PL_ORDER + 1][PL_COLUMNS], real next[PL_STATES],
+                              real low[PL_STATES])
 {
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-    int i, k;
+    int i;
     PL(inputs_now)(s, u, start, slope);
-    PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, s->series, NULL);
+    PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
     for (i = 0; i < PL_STATES; i++) {
-        s->left[i] = s->low[i];
+        low[i] = s->low[i];
     }
-    PL(total)((const real (*)[PL_COLUMNS])s->series, s->y, s->next, s->left);
+    PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
 #if PL_CONSTRAINTS
-    s->status |= PL(project)(s, PL_OVER * PL_H, s->next, s->left);
+    s->status |= PL(project)(s, PL_OVER * PL_H, next, low);
 #endif
 #if PL_WATCHED
-    if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])s->series, 1)) {
+    if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
         s->status |= PL_INACCURATE;
     }
 #endif
-    if (!PL(is_lost)(s->next)) {
+    if (PL(is_lost)(next)) {
+        s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
+        return 0;
+    }
+    return 1;
+}
+
+#if PL_OVER > 1
+
+/* One that is not finite is not kept: all its steps leave the state as it is. */
+static void PL(renew)(PL_TYPE *s, const real u[])
+{
+    int i, k;
+    if (PL(go_over)(s, u, s->series, s->next, s->left)) {
         return;
     }
-    s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
     for (i = 0; i < PL_STATES; i++) {
         s->next[i] = s->y[i];
         s->left[i] = s->low[i];
@@ -370,6 +382,26 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     PL(pass_time)(s, u);
 }
 
+#else
+
+static inline void PL(serve)(PL_TYPE *s, const real u[])
+{
+    real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], low[PL_STATES];
+    int i;
+    if (PL(go_over)(s, u, c, next, low)) {
+        for (i = 0; i < PL_STATES; i++) {
+            s->y[i] = next[i];
+            s->low[i] = low[i];
+        }
+#if PL_WATCHED
+        PL(measure)(s);
+#endif
+    }
+    PL(pass_time)(s, u);
+}
+
+#endif
+
 #elif PL_PARTS
 
 static inline void PL(serve)(PL_TYPE *s, const real u[])
@@ -383,42 +415,6 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 #endif
     PL(pass_time)(s, u);
     PL(change_loads)(s);
-}
-
-#elif !PL_STRAIGHT
-
-/* One way through but for what is kept: what is not finite is not. */
-static inline void PL(serve)(PL_TYPE *s, const real u[])
-{
-    real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], low[PL_STATES];
-    real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-    int i;
-    PL(inputs_now)(s, u, start, slope);
-    PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
-    for (i = 0; i < PL_STATES; i++) {
-        low[i] = s->low[i];
-    }
-    PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
-#if PL_CONSTRAINTS
-    s->status |= PL(project)(s, PL_H, next, low);
-#endif
-#if PL_WATCHED
-    if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
-        s->status |= PL_INACCURATE;
-    }
-#endif
-    if (PL(is_lost)(next)) {
-        s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
-    } else {
-        for (i = 0; i < PL_STATES; i++) {
-            s->y[i] = next[i];
-            s->low[i] = low[i];
-        }
-#if PL_WATCHED
-        PL(measure)(s);
-#endif
-    }
-    PL(pass_time)(s, u);
 }
 
 #endif

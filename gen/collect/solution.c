@@ -26,24 +26,14 @@ static bool all_constant(int count, const struct form *const *x)
 	return true;
 }
 
-/* The last one is kept: all components ask for that of the same matrix. */
+/* All components ask for that of the same matrix. */
 static const mpq_t *inverse_of(const struct node *node, int n, const mpq_t *value)
 {
-	static struct { int n; mpq_t *value, *inverse; } last;
-	const size_t cells = (size_t)(n * n);
+	static struct last_inverse last;
 	int column;
-	if (last.n == n && rationals_equal(cells, last.value, value))
-		return last.inverse;
-	RATIONALS *inverse = rationals(cells);
-	if (!rational_inverse(n, value, inverse, &column))
+	if (!inverse_kept(&last, n, value, &column))
 		error(node->start, NULL, "the mass matrix is singular here: highest derivatives are not determined");
-	if (last.n > 0) {
-		rationals_free(last.value, (size_t)(last.n * last.n));
-		rationals_free(last.inverse, (size_t)(last.n * last.n));
-	}
-	last.n = n;
-	last.value = rationals_copied(cells, value);
-	return last.inverse = rationals_copied(cells, inverse);
+	return last.inverse;
 }
 
 /* Of a constant M: its inverse times f */

@@ -18,6 +18,8 @@ void join_nodes(int *parent, int a, int b);                 /* their components 
 bool bareiss(int n, int width, mpz_t *W, mpz_ptr det, int *column);
 
 bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column); /* false: singular, *column free */
+struct last_inverse { int n; mpq_t *A, *inverse; };
+bool inverse_kept(struct last_inverse *last, int n, const mpq_t *A, int *column); /* the same; A may be the last one */
 bool rational_symmetric(int n, const mpq_t *A);
 /* numerators and denominators that may have factors in common: for who only rounds them */
 void unreduced_product(int rows, int inner, int columns, const mpq_t *A, const mpq_t *B, mpq_t *AB);

@@ -242,6 +242,22 @@ bool rational_inverse(int n, const mpq_t *A, mpq_t *inverse, int *column)
 	return first == n;
 }
 
+bool inverse_kept(struct last_inverse *last, int n, const mpq_t *A, int *column)
+{
+	const size_t cells = (size_t)(n * n);
+	if (last->n == n && rationals_equal(cells, last->A, A))
+		return true;
+	RATIONALS *inverse = rationals(cells);
+	if (!rational_inverse(n, A, inverse, column))
+		return false;
+	if (last->n > 0) {
+		rationals_free(last->A, (size_t)(last->n * last->n));
+		rationals_free(last->inverse, (size_t)(last->n * last->n));
+	}
+	*last = (struct last_inverse){ n, rationals_copied(cells, A), rationals_copied(cells, inverse) };
+	return true;
+}
+
 bool rational_symmetric(int n, const mpq_t *A)
 {
 	for (int i = 0; i < n; i++)

@@ -67,8 +67,7 @@ static size_t number_extent(const char *text)
 	return length;
 }
 
-/* digits [. digits] [e [+-] digits], with a digit before or after the point */
-static size_t well_formed(const char *s)
+size_t well_formed(const char *s)
 {
 	size_t i = 0, digits = 0;
 	for (; is_digit(s[i]); i++)

@@ -166,24 +166,9 @@ static size_t whole_number(struct word word, const char *note, const char *what)
 	return value;
 }
 
-/* [+-] digits [. digits] [e [+-] digits], with a digit before or after the point */
 static bool is_number(const char *s, size_t length, bool integer)
 {
-	size_t i = 0, digits = 0;
-	for (; i < length && is_digit(s[i]); i++)
-		digits++;
-	if (integer)
-		return digits > 0 && i == length;
-	if (i < length && s[i] == '.')
-		for (i++; i < length && is_digit(s[i]); i++)
-			digits++;
-	if (digits > 0 && i < length && lower(s[i]) == 'e') {
-		i++;
-		i += i < length && (s[i] == '+' || s[i] == '-');
-		for (digits = 0; i < length && is_digit(s[i]); i++)
-			digits++;
-	}
-	return digits > 0 && i == length;
+	return (integer ? strspn(s, "0123456789") : well_formed(s)) == length && length > 0;
 }
 
 static const char *number_note(struct word word)

@@ -52,31 +52,15 @@ static mpq_t *leading_matrix(const struct linear *system)
 	return W;
 }
 
-/* The last one is kept: most stages ask for that of the same masses. */
+/* Most stages ask for that of the same masses. */
 bool leading_inverse(const struct linear *system, mpq_t *inverse, int *column)
 {
-	static struct { int n; mpq_t *W, *inverse; } last;
-	size_t cells = (size_t)system->n * (size_t)system->n;
-	mpq_t *W = leading_matrix(system);
-	bool known = last.n == system->n && rationals_equal(cells, last.W, W);
-	if (!known && !rational_inverse(system->n, W, inverse, column)) {
-		rationals_free(W, cells);
-		return false;
-	}
-	if (known) {
-		for (size_t i = 0; i < cells; i++)
-			mpq_set(inverse[i], last.inverse[i]);
-		rationals_free(W, cells);
-		return true;
-	}
-	if (last.n > 0) {
-		rationals_free(last.W, (size_t)last.n * (size_t)last.n);
-		rationals_free(last.inverse, (size_t)last.n * (size_t)last.n);
-	}
-	last.n = system->n;
-	last.W = W;
-	last.inverse = rationals_copied(cells, inverse);
-	return true;
+	static struct last_inverse last;
+	RATIONALS *W = leading_matrix(system);
+	const bool regular = inverse_kept(&last, system->n, W, column);
+	for (int i = 0; i < system->n * system->n && regular; i++)
+		mpq_set(inverse[i], last.inverse[i]);
+	return regular;
 }
 
 mpq_t *inverse_of_leading(const struct linear *system)

@@ -151,88 +151,66 @@ static void bound_row(int n, const struct growth *growth, double *row, double fa
 	}
 }
 
-/* factor times the slope of each switching function */
-static double *slope_rows(const struct step *step, const double *rows, const double *A, double factor)
+/* factor times the slopes of so many rows */
+static void slope_rows(int size, int count, const double *rows, const double *A, double factor, double *slope)
 {
-	int size = step->layout.size, functions = step->model->switching->functions;
-	double *slope = ARRAY(double, (size_t)functions * (size_t)size);
-	memcpy(slope, rows, (size_t)functions * (size_t)size * sizeof *slope);
-	for (int i = 0; i < functions; i++)
+	memcpy(slope, rows, (size_t)count * (size_t)size * sizeof *slope);
+	for (int i = 0; i < count; i++)
 		times_matrix(size, slope + i * size, A);
-	for (int j = 0; j < functions * size; j++)
+	for (int j = 0; j < count * size; j++)
 		slope[j] = factor * slope[j];
-	return slope;
 }
 
-/* factor times a bound of each switching function's derivative of this order */
-static double *bound_rows(const struct step *step, const double *rows, const double *A,
-			  const struct growth *growth, int order, double factor)
+/* factor times a bound of their derivatives of this order */
+static void bound_rows(const struct step *step, int count, const double *rows, const double *A,
+		       const struct growth *growth, int order, double factor, double *bound)
 {
-	int size = step->layout.size, functions = step->model->switching->functions;
+	int size = step->layout.size;
 	SCRATCH double *row = ARRAY(double, size);
-	double *bound = ARRAY(double, (size_t)functions * (size_t)size);
-	for (int i = 0; i < functions; i++) {
+	for (int i = 0; i < count; i++) {
 		memcpy(row, rows + i * size, (size_t)size * sizeof *row);
 		for (int k = 0; k < order; k++)
 			times_matrix(size, row, A);
 		bound_row(size, growth, row, factor, bound + i * size);
 	}
-	for (int j = 0; j < functions * size && step->model->request.single; j++)
+	for (int j = 0; j < count * size && step->model->request.single; j++)
 		bound[j] *= 1 + ldexp(1, -22);          /* still a bound when it is printed as a float */
-	return bound;
 }
 
 void bend_of_row(const struct step *step, const double *A, double h, const double *row, double *bend)
 {
-	int size = step->layout.size;
-	struct growth growth = growth_of(size, A, h);
-	SCRATCH double *second = ARRAY(double, size);
-	memcpy(second, row, (size_t)size * sizeof *row);
-	times_matrix(size, second, A);
-	times_matrix(size, second, A);
-	bound_row(size, &growth, second, h * h / 8, bend);
-	for (int j = 0; j < size && step->model->request.single; j++)
-		bend[j] *= 1 + ldexp(1, -22);           /* still a bound when it is printed as a float */
+	struct growth growth = growth_of(step->layout.size, A, h);
+	bound_rows(step, 1, row, A, &growth, 2, h * h / 8, bend);
 	discard(growth.E);
 }
 
 void bounds_of_rows(const struct step *step, const struct pieces *pieces, int branch, int rows, const double *row,
 		    double *slope, double *second, double *fourth)
 {
-	int size = step->layout.size;
 	const double *A = pieces->piece[branch].slopes;
 	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
-	SCRATCH double *gone = ARRAY(double, size);
-	struct growth growth = growth_of(size, A, d);
-	for (int i = 0; i < rows; i++) {
-		memcpy(gone, row + i * size, (size_t)size * sizeof *gone);
-		for (int order = 1; order <= 4; order++) {
-			times_matrix(size, gone, A);
-			for (int j = 0; j < size && order == 1; j++)
-				slope[i * size + j] = d / 3 * gone[j];
-			if (order % 2)
-				continue;
-			SCRATCH double *lost = ARRAY(double, size);
-			double *bound = (order == 2 ? second : fourth) + i * size;
-			memcpy(lost, gone, (size_t)size * sizeof *lost);
-			bound_row(size, &growth, lost, order == 2 ? d * d / 8 : d * d * d * d / 384, bound);
-			for (int j = 0; j < size && step->model->request.single; j++)
-				bound[j] *= 1 + ldexp(1, -22);  /* still a bound when it is printed as a float */
-		}
-	}
+	struct growth growth = growth_of(step->layout.size, A, d);
+	slope_rows(step->layout.size, rows, row, A, d / 3, slope);
+	bound_rows(step, rows, row, A, &growth, 2, d * d / 8, second);
+	bound_rows(step, rows, row, A, &growth, 4, d * d * d * d / 384, fourth);
 	discard(growth.E);
+}
+
+/* Room for a row of each switching function */
+static double *rows_new(const struct step *step)
+{
+	return ARRAY(double, (size_t)step->model->switching->functions * (size_t)step->layout.size);
 }
 
 static void fill_bounds(const struct step *step, const struct pieces *pieces, int branch)
 {
 	struct region_piece *piece = &pieces->piece[branch];
-	double d = ldexp(round_rational(step->model->h), -step->branch[branch].halvings);
-	struct growth growth = growth_of(step->layout.size, piece->slopes, d);
-	piece->slope = slope_rows(step, piece->row, piece->slopes, d / 3);
-	piece->second = bound_rows(step, piece->row, piece->slopes, &growth, 2, d * d / 8);
-	piece->fourth = bound_rows(step, piece->row, piece->slopes, &growth, 4, d * d * d * d / 384);
-	piece->reach = reach_of_rows(step, branch, piece->slopes, step->model->switching->functions, piece->row);
-	discard(growth.E);
+	int functions = step->model->switching->functions;
+	piece->slope = rows_new(step);
+	piece->second = rows_new(step);
+	piece->fourth = rows_new(step);
+	bounds_of_rows(step, pieces, branch, functions, piece->row, piece->slope, piece->second, piece->fourth);
+	piece->reach = reach_of_rows(step, branch, piece->slopes, functions, piece->row);
 }
 
 /* ---- a step over the whole of h, which most often is seen in a line to stay clear ---- */
@@ -352,8 +330,10 @@ static void fill_full(const struct step *step, const struct pieces *pieces, int 
 	struct region_piece *piece = &pieces->piece[branch];
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(step->layout.size, piece->slopes, h);
-	piece->off = bound_rows(step, piece->row, piece->slopes, &growth, 2, h * h / 8);
+	piece->off = rows_new(step);
 	piece->still = ARRAY(double, step->model->switching->functions);
+	bound_rows(step, step->model->switching->functions, piece->row, piece->slopes, &growth, 2, h * h / 8,
+		   piece->off);
 	discard(growth.E);
 }
 
@@ -363,9 +343,12 @@ static void fill_crossing(const struct step *step, const struct pieces *pieces, 
 	int size = step->layout.size, functions = step->model->switching->functions;
 	double h = round_rational(step->model->h);
 	struct growth growth = growth_of(size, piece->slopes, h);
-	piece->turn = slope_rows(step, piece->row, piece->slopes, h / 3);
-	piece->third = bound_rows(step, piece->row, piece->slopes, &growth, 3, h * h * h / 24);
-	piece->bend = bound_rows(step, piece->row, piece->slopes, &growth, 4, h * h * h * h / 384);
+	piece->turn = rows_new(step);
+	piece->third = rows_new(step);
+	piece->bend = rows_new(step);
+	slope_rows(size, functions, piece->row, piece->slopes, h / 3, piece->turn);
+	bound_rows(step, functions, piece->row, piece->slopes, &growth, 3, h * h * h / 24, piece->third);
+	bound_rows(step, functions, piece->row, piece->slopes, &growth, 4, h * h * h * h / 384, piece->bend);
 	piece->turns = turns_of(step, branch);
 	piece->slack = slack_rows(step, piece->row, piece->slopes, pieces->degree);
 	for (int i = 0; i < functions; i++) {
