@@ -402,17 +402,6 @@ static int worst_requirement(const struct choosing *c, const struct alternative 
 	return worst;
 }
 
-const struct alternative *most_exact(const struct choice *choice, double most)
-{
-	const struct alternative *best = NULL;
-	for (int i = 0; i < choice->alternatives; i++) {
-		const struct alternative *a = &choice->alternative[i];
-		if (!a->refused && !a->why && a->cost <= most && (!best || a->error_ratio < best->error_ratio))
-			best = a;
-	}
-	return best;
-}
-
 /* The largest real part of a pole [1/s] */
 static double growth_of(const struct step *step)
 {

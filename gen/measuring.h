@@ -59,9 +59,6 @@ bool meets(const struct alternative *a);
 bool is_enough(const struct measuring *m, const struct alternative *a);
 void try_alternative(struct measuring *m, struct alternative *a);        /* and keeps it */
 void sort_by_cost(struct choice *choice);      /* those that there are first */
-
-/* ---- choose.c ---- */
-
 /* Of those that are known and cost so much at most; NULL: there is none */
 const struct alternative *most_exact(const struct choice *choice, double most);
 

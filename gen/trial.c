@@ -362,6 +362,17 @@ static int by_cost(const void *left, const void *right)
 	return (int)a->form - (int)b->form;
 }
 
+const struct alternative *most_exact(const struct choice *choice, double most)
+{
+	const struct alternative *best = NULL;
+	for (int i = 0; i < choice->alternatives; i++) {
+		const struct alternative *a = &choice->alternative[i];
+		if (!a->refused && !a->why && a->cost <= most && (!best || a->error_ratio < best->error_ratio))
+			best = a;
+	}
+	return best;
+}
+
 void sort_by_cost(struct choice *choice)
 {
 	qsort(choice->alternative, (size_t)choice->alternatives, sizeof *choice->alternative, by_cost);

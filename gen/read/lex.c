@@ -67,7 +67,7 @@ static size_t number_extent(const char *text)
 	return length;
 }
 
-size_t well_formed(const char *s)
+size_t number_length(const char *s)
 {
 	size_t i = 0, digits = 0;
 	for (; is_digit(s[i]); i++)
@@ -89,7 +89,7 @@ size_t well_formed(const char *s)
 static void check_number(struct token token)
 {
 	const char *text = token.at.source->text + token.at.offset;
-	size_t good = well_formed(text);
+	size_t good = number_length(text);
 	if (good == token.length)
 		return;
 	const char *note = "a number is written 12, 0.5, .5, 1. or 2e-3";

@@ -168,7 +168,7 @@ static size_t whole_number(struct word word, const char *note, const char *what)
 
 static bool is_number(const char *s, size_t length, bool integer)
 {
-	return (integer ? strspn(s, "0123456789") : well_formed(s)) == length && length > 0;
+	return (integer ? strspn(s, "0123456789") : number_length(s)) == length && length > 0;
 }
 
 static const char *number_note(struct word word)

@@ -28,7 +28,7 @@ size_t lex_statement_end(const struct source *source, size_t from, size_t *unclo
 struct token lex_next(struct lexer *lexer);
 const char *token_text(struct token token);                /* for messages: 'x1', the end of the line */
 /* digits [. digits] [e [+-] digits], with a digit before or after the point: how long what begins here is */
-size_t well_formed(const char *text);
+size_t number_length(const char *text);
 void lex_number(struct token token, mpq_ptr value);        /* the decimal, exactly */
 
 /* ---- habits.c: what is written from habit of other programs, for the lexer ---- */
