@@ -436,11 +436,9 @@ static void print_table(void)
 	     "# What goes with what\n\n"
 	     "You want to know whether two features or options go together: a row and a column have the sign of\n"
 	     "each. `+`: they work. A number: plgen refuses them with that message below, where N is a number and X\n"
-	     "a name. Blank: one excludes the other. Every `+` is tested: a covering array has every pair, of the\n"
-	     "first ones every triple, and `step`, `run`, `jump`, `at`, `set` at odd times, copies and `--rhs` agree\n"
-	     "with CVODE or the closed form within the bounds of `tests/fuzz/drive.c`. An option that only makes\n"
-	     "a step faster stands aside with a note that says why. The page is made by\n"
-	     "`tests/combinations/combinations.sh` from `gen/model/capability.def`, as are plgen's messages.\n");
+	     "a name. Blank: one excludes the other. Every `+` is tested, by a covering array of pairs, against CVODE\n"
+	     "or the closed form. An option that only makes a step faster stands aside with a note that says why.\n"
+	     "`tests/combinations/combinations.sh` makes the page from `gen/model/capability.def`.\n");
 	print_pairs_table();
 	print_refusals();
 	puts("\n## A new capability\n\n"
