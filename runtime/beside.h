@@ -6,14 +6,15 @@
  *     PL(name), PL_OF(name)      the prefix of this model, and of the one that it is beside: PL_OF_TYPE
  *     PL_TYPE, PL_STATES, PL_INPUTS, PL_OUTPUTS      of this one
  *     PL_OWN_STATES, PL_OWN_OUTPUTS, PL_OWN_INPUTS, PL_DERIVATIVES, PL_SEEDED, PL_SLOPED    of the one beside
- *     PL_FROM, PL_MOVED         the first of its columns, and how many it has
+ *     PL_FROM, PL_WIDE          the first of its columns, and how many it has
  *     PL_DECLARED                  1: outputs are declared; else they are the states
  *     PL_ENDED(b)                whether b has no more of a series in hand, so that its states may be written
  *     PL_PAST_SAMPLES            of an input before the last
  *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
  *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
- *     PL(moved_state)[PL_STATES]     and of which state
+ *     PL(moved_state)[PL_STATES]     and of which state; -1: of none, and 0
+ *     PL_MOVED                   columns that go through events: member contact.doubt
  *     PL(moved_input)[PL_INPUTS]     of each input the model's; behind the first PL_OWN_INPUTS stand seeds */
 #include "numbers.h"
 
@@ -24,7 +25,8 @@ static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_S
     int i;
     PL_OF(get)(s, y);
     for (i = 0; i < PL_STATES; i++) {
-        z[i] = PL(moved_column)[i] < 0 ? y[PL(moved_state)[i]] : ds->s[PL(moved_column)[i]][PL(moved_state)[i]];
+        const int p = PL(moved_column)[i], of = PL(moved_state)[i];
+        z[i] = of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
     }
 }
 
@@ -35,7 +37,8 @@ static int PL(is_left)(const PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds
     int i, left = PL_OF(time)(s) == ds->time;
     PL(get)(b, w);
     for (i = 0; i < PL_STATES; i++) {
-        left = left && z[i] == (PL(moved_column)[i] < 0 ? ds->left[PL(moved_state)[i]] : w[i]);
+        const int own = PL(moved_column)[i] < 0 && PL(moved_state)[i] >= 0;
+        left = left && z[i] == (own ? ds->left[PL(moved_state)[i]] : w[i]);
     }
     return left;
 }
@@ -132,7 +135,7 @@ static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const
     PL(both_samples)(u, du, both);
 #endif
 #if PL_PARAMS > 0
-    ds->status |= PL(follow_params)(b, s) ? (unsigned)PL_NOT_FINITE : 0u;
+    ds->status |= PL(follow_params)(b, s) ? (unsigned)PL_D_FAILED : 0u;
 #endif
     PL(follow)(b, s, ds);
     PL(step)(b PL_BOTH);
@@ -142,7 +145,11 @@ static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const
             ds->s[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
         }
     }
-    ds->status |= (unsigned)PL(status)(b);
+    ds->status |= PL(status)(b) & PL_UNDECIDED ? (unsigned)PL_D_UNDECIDED : 0u;
+    ds->status |= PL(status)(b) & ~(PL_UNDECIDED | PL_INACCURATE) ? (unsigned)PL_D_FAILED : 0u;
+#if PL_MOVED
+    ds->status |= b->contact.doubt.status;
+#endif
     (void)u;
     (void)du;
 }
@@ -157,7 +164,7 @@ static void PL(out_beside)(const PL_OF_TYPE *s, const PL_OF(d) *ds, const PL_TYP
     PL(follow)(&b, s, ds);
     PL(out)(&b, out);
     for (i = 0; i < PL_OWN_OUTPUTS; i++) {
-        for (p = 0; p < PL_MOVED; p++) {
+        for (p = 0; p < PL_WIDE; p++) {
             J[i][PL_FROM + p] = out[PL_OWN_OUTPUTS * (p + 1) + i];
         }
     }

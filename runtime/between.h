@@ -30,6 +30,9 @@ typedef struct PL(piece) { /* a part of a step */
 #if PL_CONTACTS
     real tau, when;        /* where a series begins, after now; between then and its end */
     pl_instant at;
+#if PL_MOVED
+    real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];
+#endif
 #endif
 } PL(piece);
 
@@ -58,6 +61,9 @@ static PL_APART void PL(watch)(PL(piece) *p, PL(contact) *contact)
     PL(open)(&p->at, contact, p->y, p->low, p->c[0], p->terms, p->work);
     p->at.expand = PL(again);
     p->at.from = p;
+#if PL_MOVED
+    p->at.moved = p->moved;
+#endif
 }
 
 /* The series from there, behind what happens there: 0; 1: it begins anew; below 0: there is too much of that */

@@ -9,6 +9,7 @@
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
  *     PL_REGIONS                 1: the regions are numbered
  *     PL_WAY                     beside contacts, if what is watched goes by polynomials: their degree, PL(along)
+ *     PL_MOVED                   so many columns of derivatives are among the states: member doubt of PL(contact)
  *     PL_BOUNCES                 1: contacts may come to rest by bouncing: member rested of PL(contact)
  *     PL_COLUMNS, PL_INPUTS, PL_SEGMENTS, PL_CHOICES, PL_ADAPTIVE, PL_CHANGES, PL_MAX_EVENTS, PL_H,
  *     PL(expand_from), PL(inputs_now)   as taylor.h
@@ -121,6 +122,9 @@ static inline void PL(forget)(PL(contact) *contact)
     contact->total = 0;
 #if PL_CONTACTS
     contact->rested = 0;
+#endif
+#if PL_MOVED
+    contact->doubt.status = 0;
 #endif
     for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
         contact->interval[i] = 0;
@@ -236,6 +240,12 @@ static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], re
     at->unlisted = 0;
     at->status = 0;
     at->chain = PL(no_impact)();
+#if PL_MOVED
+    at->doubt = &contact->doubt;
+#else
+    at->doubt = NULL;
+#endif
+    at->moved = NULL;
 }
 #endif
 

@@ -68,6 +68,9 @@
 #undef pl_derivatives
 #undef pl_many
 #undef pl_model
+#undef pl_doubt
+#undef pl_doubt_add
+#undef pl_moved
 #undef pl_multiply
 #undef pl_multiply_add
 #undef pl_not_finite

@@ -3,6 +3,7 @@
  * the region before it.  What holds, what slips and what flies behind an event is found by looking at all combinations
  * of those that are at rest; the series of a combination says whether it can be. */
 #include "series_impacts.h"
+#include "moved.h"
 
 /* ---- events at the start, and in a piece ---- */
 
@@ -143,6 +144,8 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
             if (look(&e, b[k], up ? 1 : -1, last, behind, end, along, &first, splits, at->work)) {
                 any = 1;
                 set_event(m, at, i, k, up);
+            } else if (starting >= 0 && m->moved != NULL) {
+                miss(m, at, &e, i, b[k], up ? 1 : -1, first * end);
             }
         }
     }
@@ -157,7 +160,7 @@ real pl_events_next(const pl_events *m, pl_instant *at, real *size, int *splits)
 
 /* ---- one event ---- */
 
-int pl_events_pass(const pl_events *m, pl_instant *at)
+static int pass(const pl_events *m, pl_instant *at)
 {
     const pl_crossing e = at->next;
     const int begins = at->starting, loses = begins >= 0 && m->impact[begins].restitution < 1;
@@ -192,6 +195,19 @@ int pl_events_pass(const pl_events *m, pl_instant *at)
     come_to_rest(m, at, acted);
     keep(m, at);
     return !at->chain.full;
+}
+
+int pl_events_pass(const pl_events *m, pl_instant *at)
+{
+    leaving l;
+    int passed;
+    if (m->moved == NULL) {
+        return pass(m, at);
+    }
+    l = leave(m, at);
+    passed = pass(m, at);
+    arrive(m, at, &l);
+    return passed;
 }
 
 int pl_events_begin(const pl_events *m, pl_instant *at)

@@ -68,6 +68,9 @@
 #define pl_derivatives pl_derivativesf
 #define pl_many pl_manyf
 #define pl_model pl_modelf
+#define pl_doubt pl_doubtf
+#define pl_doubt_add pl_doubtf_add
+#define pl_moved pl_movedf
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add
 #define pl_not_finite pl_not_finitef

@@ -50,6 +50,9 @@
 #ifndef PL_EVENT_FREE
 #define PL_EVENT_FREE 0
 #endif
+#ifndef PL_MOVED
+#define PL_MOVED 0
+#endif
 #ifndef PL_CONTACTS
 #define PL_CONTACTS 0
 #endif

@@ -77,6 +77,9 @@ typedef struct PL(meeting) { /* where the next internal step starts */
     const real *start, *slope;
     real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_EVENT_ORDER)];
     pl_instant at;
+#if PL_MOVED
+    real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];
+#endif
 } PL(meeting);
 
 static void PL(again)(const void *from, const int *interval, const real *y, real *c, real *terms)
@@ -94,6 +97,9 @@ static void PL(look_here)(PL(meeting) *m, PL_TYPE *s, const real start[], const 
     PL(open)(&m->at, &s->contact, s->start, s->low, m->c[0], m->terms, m->work);
     m->at.expand = PL(again);
     m->at.from = m;
+#if PL_MOVED
+    m->at.moved = m->moved;
+#endif
     m->at.time = PL(since)(s) * PL_H;
     m->at.chain = s->contact.chain;
     m->when = PL(when)(s);

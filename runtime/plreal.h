@@ -242,6 +242,38 @@ typedef struct pl_event_impact {
     PL_REAL per; /* change of the switching function for a penetration of 1 */
 } pl_event_impact;
 
+/* Derivatives by params that are states beside those that they are of: what events do to them (saltation.h). */
+typedef struct pl_moved {
+    int columns;
+    const int *column, *state; /* of each state the column that it is of, -1: of none; the state that it is of */
+    const int *time;           /* of each column the state that is the derivative of t, 0 between events; -1: none */
+    const int *velocity;       /* holds x columns: watches; */
+    const int *pull;           /* holds x columns x 2, as down and up of pl_hold */
+    const int *place;          /* impacts x columns */
+    const PL_REAL *back;       /* holds x columns x 2 x states: for a velocity of 1, for a place of 1 */
+    const int *back_watch;     /* the same, as of pl_events */
+} pl_moved;
+
+/* Why derivatives are in doubt: PL_D_... bits, and of each the event that was the first: its switching function, as
+ * pl_crossing has it, and its time [s]. */
+typedef struct pl_doubt {
+    unsigned status;
+    int function[3];
+    PL_REAL time[3];
+} pl_doubt;
+
+static inline void pl_doubt_add(pl_doubt *d, unsigned bits, int function, PL_REAL time)
+{
+    int i;
+    for (i = 0; i < 3; i++) {
+        if ((bits & ~d->status) >> i & 1u) {
+            d->function[i] = function;
+            d->time[i] = time;
+        }
+    }
+    d->status |= bits;
+}
+
 typedef struct pl_events {
     const pl_series_switching *switching;
     int states;
@@ -259,6 +291,7 @@ typedef struct pl_events {
     int max_events;
     /* of an entry of back and place_back that depends on the state its watch, -1: none; NULL: no entry does */
     const int *back_watch, *place_watch;
+    const pl_moved *moved; /* NULL: no derivatives are among the states */
 } pl_events;
 
 /* Impacts that follow each other in a step. */
@@ -289,6 +322,8 @@ typedef struct pl_instant {
     int unlisted;       /* 1: crossings are not listed */
     int status;         /* 0, PL_UNDECIDED, PL_TOO_MANY_EVENTS, PL_PENETRATED */
     pl_chain chain;     /* before the first impact: last is -h, all else 0 */
+    pl_doubt *doubt;    /* of derivatives; times are after the start of the step */
+    PL_REAL *moved;     /* PL_MOVED_WORK entries */
 } pl_instant;
 
 /* Sets the intervals of a state that was set.  A function on a double breakpoint is held there if its conditions allow

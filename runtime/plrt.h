@@ -365,7 +365,8 @@ enum {
 enum {
     PL_D_GRAZING = 1,   /* A guard was met, or all but met, so flatly that behind it no derivative is known. */
     PL_D_ONE_SIDED = 2, /* Events at one instant: their order, which a param may turn, decides on the derivative. */
-    PL_D_UNDECIDED = 4  /* PL_UNDECIDED: the derivative is that of what was taken. */
+    PL_D_UNDECIDED = 4, /* PL_UNDECIDED: the derivative is that of what was taken. */
+    PL_D_FAILED = 8     /* The step of the derivatives ended early: what NAME_status may say happened to it. */
 };
 
 /* NAME_retune returns 0, PL_NOT_FINITE or one of these; unless it returns 0 the coefficients are unchanged. */
@@ -388,6 +389,7 @@ enum { PL_PEAK_SPACE = 6 };
 #define PL_PEAK_WORK(size) (PL_PEAK_SPACE * (size))
 #define PL_SWITCHING_WORK(size, switches, degree) (((degree) + 1) * ((size) + 2) + 5 * (size) + 5 * (switches))
 #define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
+#define PL_MOVED_WORK(states, columns) (2 * (states) + 2 * (columns))
 #define PL_SERIES_SWITCHING_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
 #define PL_VARIATION_WORK(size, degree) (((degree) + 4) * (size))
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))

@@ -210,6 +210,35 @@ static int is_slack(const pl_events *m, const pl_instant *at, int hold)
     return !(certain(&velocity) >= 0 && certain(&velocity) <= 0 && certain(&place) >= 0 && certain(&place) <= 0);
 }
 
+/* The derivatives of what is held are held with it: by oblique projections, until nothing moves any more. */
+static void keep_moved(const pl_events *m, pl_instant *at)
+{
+    const pl_moved *d = m->moved;
+    int sweeps, moving = 1, i, k;
+    for (sweeps = 0; d != NULL && sweeps < MOST_SWEEPS && moving; sweeps++) {
+        moving = 0;
+        for (i = 0; i < m->holds; i++) {
+            for (k = 0; k < d->columns && holds_now(m, at, i); k++) {
+                const int row = i * d->columns + k, impact = m->hold[i].impact;
+                const column velocity = watched(m, at, d->velocity[row]);
+                if (magnitude(certain(&velocity)) > 0) {
+                    take(m, at, 2 * row, d->back, d->back_watch, column_at(&velocity, 0));
+                    renew(m, at);
+                    moving = 1;
+                }
+                if (impact >= 0) {
+                    const column place = watched(m, at, d->place[impact * d->columns + k]);
+                    if (magnitude(certain(&place)) > 0) {
+                        take(m, at, 2 * row + 1, d->back, d->back_watch, column_at(&place, 0));
+                        renew(m, at);
+                        moving = 1;
+                    }
+                }
+            }
+        }
+    }
+}
+
 static void keep(const pl_events *m, pl_instant *at)
 {
     int again, i;
@@ -220,6 +249,7 @@ static void keep(const pl_events *m, pl_instant *at)
             }
         }
     }
+    keep_moved(m, at);
 }
 
 /* 1 or -1: its first derivative that is not 0 but for rounding */

@@ -56,6 +56,7 @@
 #undef PL_COLUMNS
 #undef PL_CONSTRAINTS
 #undef PL_CONTACTS
+#undef PL_MOVED
 #undef PL_CONTACT_ROWS
 #undef PL_CONVERTED
 #undef PL_COORDS
@@ -114,6 +115,7 @@
 #undef PL_FORCES
 #undef PL_FORMULAS
 #undef PL_FROM
+#undef PL_WIDE
 #undef PL_FUNCTIONS
 #undef PL_GUARD_ERRORS
 #undef PL_GUARD_ROWS

@@ -72,12 +72,14 @@ static struct form *friction_form(struct collector *c, const struct node *node, 
 		not_linear(c, node, "is dry friction");
 	if (!keeps_piecewise(c))
 		error(node->at, "x' and what else moves has friction", "friction stands in equations and outputs");
-	check_friction(c, node, x);
+	if (!node->follows)
+		check_friction(c, node, x);
 	/* for all time, what moves with x may be an atom of time: each segment has been looked at */
-	if (!has_coordinate(x[0]) || (x[0]->term[x[0]->terms - 1].basis.kind == BASIS_ATOM && !c->whole_time))
+	if (!has_coordinate(x[0]) ||
+	    (x[0]->term[x[0]->terms - 1].basis.kind == BASIS_ATOM && !c->whole_time && !node->follows))
 		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 		      "the velocity of friction is linear in velocities");
-	bool none = node->children == 2 && x[1]->terms == 0;
+	bool none = node->children == 2 && x[1]->terms == 0 && !node->follows;
 	return none ? NEW(struct form) : kept_call(c, node, FN_FRICTION, node->children, x);
 }
 

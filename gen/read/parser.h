@@ -163,6 +163,8 @@ struct slope {                      /* a derivative; an error at `at` where it h
 	const char *name;
 	struct symbol **moved;      /* per number of a symbol: derivatives of coordinates and inputs; NULL: 0 */
 	struct node **known;        /* likewise of what has a value: the derivative, once found */
+	struct symbol *time;        /* the derivative of t, at an event that moves; NULL: 0 */
+	const struct slope *event;  /* of what is watched for events */
 };
 struct node *slope_by(struct node *node, struct slope by);
 struct node *slope_of(struct node *node, struct place at);  /* in time */

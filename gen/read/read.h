@@ -98,6 +98,7 @@ struct node {
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	bool each;                  /* of PRODUCT: of vectors component by component */
+	const struct node *follows; /* of friction: it is the derivative of this one, and acts where that does */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
 	const struct unit *unit;    /* of a SUM of one child: what stands behind it; else NULL */
 	bool counted;               /* the child is a number of these, times its factor; else it comes out in it */
@@ -202,6 +203,11 @@ struct when {                       /* when guard: jump, jump;  or a stop that b
 	/* of stop: between two coordinates, NULL: the ground; what comes up to `gap` is from - to; both NULL: between
 	 * expressions. restitution NULL: it is no stop */
 	struct node *from, *to, *gap, *restitution;
+	int slopes;                 /* one per derivative of the equations */
+	struct when_slope *slope;
+};
+struct when_slope {                 /* what follows a param of a guard, left less right side, of e and of each jump */
+	struct node *guard, *restitution, **jump;
 };
 struct initial {
 	struct place at;
@@ -341,6 +347,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	} tuned;
 	int sensitivities;
 	struct sensitivity *sensitivity;
+	struct { int columns, own, stride; } joined; /* derivatives: coordinates before them, apart */
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	struct { bool written, adopted; } units; /* dimensions are checked, unless they are another spec's */

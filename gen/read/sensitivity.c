@@ -134,6 +134,7 @@ struct varying {                    /* one derivative */
 	struct spec *spec;
 	const struct sensitivity *of;
 	struct slope by;
+	struct slope event;         /* of what is watched for events, which move in time */
 	const char *suffix;         /* of its symbols: k, x_0 */
 	int own, first;             /* components of coordinates: of the model, before those that are added */
 };
@@ -164,6 +165,64 @@ static void add_moved(struct varying *v, int symbols)
 			v->by.moved[s->number] = add_like(v, s);
 			v->by.moved[s->number]->index = spec->count.inputs++;
 		}
+}
+
+/* Whether what is watched for events, or the velocity of friction, depends on time itself */
+static bool watches_time(const struct node *node, bool watched)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool any = watched && (node->kind == NODE_TIME || (s && s->kind == SYMBOL_INPUT));
+	if (s && s->value && !any)
+		any = watches_time(s->value, watched);
+	for (int i = 0; i < node->children && !any; i++)
+		any = watches_time(node->child[i], watched || (node->function == FN_FRICTION &&
+							       node->kind == NODE_CALL && i == 0));
+	return any;
+}
+
+static bool has_timed_events(const struct spec *spec)
+{
+	bool any = false;
+	for (int i = 0; i < spec->whens && !any; i++) {
+		any = watches_time(spec->when[i].guard, true);
+		for (int k = 0; k < spec->when[i].jumps && !any; k++)
+			any = watches_time(spec->when[i].jump[k].value, true);
+	}
+	for (int i = 0; i < spec->equations && !any; i++)
+		any = watches_time(spec->equation[i].left, false) ||
+		      (spec->equation[i].right && watches_time(spec->equation[i].right, false));
+	for (int i = 0; i < spec->elements && !any; i++)
+		any = spec->element[i].value && watches_time(spec->element[i].value, false);
+	return any;
+}
+
+/* The derivative of t, which is 0 but at an event: a coordinate of first order that nothing moves */
+static void add_time(struct varying *v)
+{
+	struct spec *spec = v->spec;
+	struct symbol *s = NEW(struct symbol);
+	*s = (struct symbol){ .kind = SYMBOL_COORD, .name = format("t_%s", v->suffix), .at = v->of->at, .used = true,
+			      .index = spec->count.components++ };
+	add_symbol(spec, s);
+	spec->count.coords++;
+	v->event.time = s;
+	*MORE(spec->equation, spec->equations) = (struct equation){ .at = v->of->at, .left = state_node(s, 0, 1),
+									  .right = node_new(NODE_NUMBER, v->of->at) };
+}
+
+static void add_when(struct varying *v, struct when *when)
+{
+	struct when_slope made = { .jump = ARRAY(struct node *, (size_t)when->jumps + 1) };
+	struct node *over = node_new(NODE_SUM, when->guard->at);
+	for (int side = 0; side < 2; side++)
+		add_child(over, when->guard->child[side], side, when->guard->at);
+	over->start = when->guard->start;
+	over->end = when->guard->end;
+	made.guard = slope_by(over, v->event);
+	made.restitution = when->restitution ? slope_by(when->restitution, v->by) : NULL;
+	for (int i = 0; i < when->jumps; i++)
+		made.jump[i] = slope_by(when->jump[i].value, v->event);
+	*MORE(when->slope, when->slopes) = made;
 }
 
 static void add_equation(struct varying *v, struct equation e)
@@ -201,7 +260,7 @@ static void add_element(struct varying *v, struct element e)
 {
 	const struct element own = e;
 	struct node *change = e.kind == ELEMENT_ENERGY ? NULL : slope_by(e.value, v->by);
-	const bool force = e.kind == ELEMENT_FORCE, energy = e.kind == ELEMENT_ENERGY;
+	const bool force = e.kind == ELEMENT_FORCE || e.kind == ELEMENT_FRICTION, energy = e.kind == ELEMENT_ENERGY;
 	const int order = e.kind == ELEMENT_MASS ? 2 : e.kind == ELEMENT_DAMPER ? 1 : 0;
 	e.from = moved_node(v, own.from);
 	e.to = moved_node(v, own.to);
@@ -277,7 +336,7 @@ static void add_outputs(struct varying *v, int symbols)
 	}
 }
 
-struct extent { int symbols, equations, elements, energies, initials, components; };
+struct extent { int symbols, equations, elements, energies, initials, components; bool timed; };
 
 static void vary(struct varying *v, struct extent before)
 {
@@ -287,12 +346,19 @@ static void vary(struct varying *v, struct extent before)
 	v->own = before.components;
 	v->first = spec->count.components;
 	add_moved(v, before.symbols);
+	v->event = v->by;
+	v->event.known = ARRAY(struct node *, (size_t)before.symbols + 1);
+	if (before.timed)
+		add_time(v);
+	v->by.event = &v->event;
 	for (int i = 0; i < before.energies; i++)
 		add_energy(v, spec->lagrange.energy[i]);
 	for (int i = 0; i < before.equations; i++)
 		add_equation(v, spec->equation[i]);
 	for (int i = 0; i < before.elements; i++)
 		add_element(v, spec->element[i]);
+	for (int i = 0; i < spec->whens; i++)
+		add_when(v, &spec->when[i]);
 	add_initials_of(v, before.initials);
 	add_outputs(v, before.symbols);
 	if (spec->request.step && !is_zero_node(slope_by(spec->request.step, v->by)))
@@ -320,7 +386,10 @@ void add_derivatives(struct spec *spec, int first, int count)
 	if (count == 0)
 		return;
 	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->lagrange.energies,
-				       spec->states.initials, spec->count.components };
+				       spec->states.initials, spec->count.components, has_timed_events(spec) };
+	spec->joined.columns = count;
+	spec->joined.own = before.components;
+	spec->joined.stride = before.components + before.timed;
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
 		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };

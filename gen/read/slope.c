@@ -132,6 +132,28 @@ static void check_condition(const struct node *node, const struct slope *by)
 		      "no derivative by %s is built here: it moves where the formula changes", by->name);
 }
 
+/* The derivative of t where that moves */
+static struct node *moved_time(const struct node *node, const struct slope *by)
+{
+	struct node *made = like(node, NODE_NAME);
+	made->symbol = by->time;
+	return made;
+}
+
+/* Of an input on its ramp, beside its own: u' times that of t */
+static struct node *along_time(const struct node *node, struct node *own, const struct slope *by)
+{
+	struct node *sum = like(node, NODE_SUM), *rate = like(node, NODE_NAME);
+	rate->symbol = node->symbol;
+	rate->component = node->component;
+	rate->primes = 1;
+	if (own)
+		append(sum, own, false);
+	if (node->primes == 0)
+		append(sum, times(rate, moved_time(node, by)), false);
+	return sum->children ? sum : number(node, 0);
+}
+
 static struct node *varied_name(struct node *node, const struct slope *by)
 {
 	const struct symbol *symbol = node->symbol;
@@ -146,6 +168,8 @@ static struct node *varied_name(struct node *node, const struct slope *by)
 	made->symbol = by->moved[symbol->number];
 	made->component = node->component;
 	made->primes = node->primes;
+	if (symbol->kind == SYMBOL_INPUT && by->time && symbol->hold > 0)
+		return along_time(node, made->symbol ? made : NULL, by);
 	/* u(t - d): its slope along a ramp; where it jumps: step/derivatives.c */
 	if (symbol->delayed && symbol->hold > 0 && node->primes == 0 && follows(symbol->when, by)) {
 		made->symbol = node->symbol;
@@ -332,8 +356,20 @@ static struct node *slope_of_angle(struct node *node, const struct slope *by)
 	return quotient(sum, square);
 }
 
+/* Of dry friction: what holds it holds its derivative, what slips has that of its force. */
+static struct node *slope_of_friction(struct node *node, const struct slope *by)
+{
+	struct node *made = call(node, FN_FRICTION, derivative(node->child[0], by->event));
+	for (int i = 1; i < node->children; i++)
+		append(made, derivative(node->child[i], by), false);
+	made->follows = node;
+	return made;
+}
+
 static struct node *slope_of_call(struct node *node, const struct slope *by)
 {
+	if (node->function == FN_FRICTION && by->event)
+		return slope_of_friction(node, by);
 	struct node *x = node->child[0], *inner = derivative(x, by), *root;
 	bool constant = true;
 	for (int i = 0; i < node->children; i++)
@@ -406,7 +442,9 @@ static struct node *derivative(struct node *node, const struct slope *by)
 	switch (node->kind) {
 	case NODE_NUMBER:
 	case NODE_PI:      return number(node, 0);
-	case NODE_TIME:    return number(node, by->kind == SLOPE_TIME || by->kind == SLOPE_LOADS);
+	case NODE_TIME:
+		return by->time ? moved_time(node, by)
+				: number(node, by->kind == SLOPE_TIME || by->kind == SLOPE_LOADS);
 	case NODE_NAME:    return slope_of_name(node, by);
 	case NODE_SUM:     return slope_of_sum(node, by);
 	case NODE_PRODUCT: return slope_of_product(node, by);

@@ -125,7 +125,8 @@ static void report_doubt(const struct instance *s, unsigned *known, bool single)
 	const struct { unsigned bit; const char *text; } all[] = {
 		{ PL_D_GRAZING, "a stop was met, or all but met, so flatly that behind it they are not known" },
 		{ PL_D_ONE_SIDED, "events fell together, and they are those of one order" },
-		{ PL_D_UNDECIDED, "what is to stick and what is to slip had no answer" }
+		{ PL_D_UNDECIDED, "what is to stick and what is to slip had no answer" },
+		{ PL_D_FAILED, "their own steps have failed" }
 	};
 	*known |= doubt;
 	for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -149,6 +149,7 @@ static struct facts facts_of(const bool *row)
 	f.curved = f.left;
 	f.inexact = f.left || f.holds;
 	f.measured = f.left || f.regions;
+	f.series = f.series || (f.left && f.contacts && !(f.approximates || f.normal || f.collocation));
 	f.projects = f.series || f.collocation || !(f.approximates || f.normal);        /* scheme exact has its line */
 	f.tuned = f.tunable && !f.left;         /* else params are held, as inputs are */
 	return f;

@@ -264,6 +264,7 @@ static void emit_include(const struct emitter *e)
 		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
 		   { "FLOORS", has_floors(e) }, { "CONSTRAINTS", e->model->equations.correction != NULL },
 		   { "MASSES", moving_masses(e) });
+	emit_moved_columns(e);
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (has_switching(e))

@@ -119,7 +119,109 @@ static void emit_events(const struct emitter *e, const char *name, const char *s
 	       "    $n_event_place[0],\n"
 	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS,\n",
 	    name, switching, watch, c->holds, c->series_impacts, c->conflicts);
-	say(e, c->moves ? "    $n_event_back_watch, $n_event_place_watch\n};\n" : "    NULL, NULL\n};\n");
+	say(e, "    %s, %s\n};\n", c->moves ? spell(e, "$n_event_back_watch, $n_event_place_watch") : "NULL, NULL",
+	    c->columns > 0 ? spell(e, "&$n_moved") : "NULL");
+}
+
+/* ---- derivatives among the states ---- */
+
+static int state_of_own(const struct emitter *e, int own, int state)
+{
+	return state < e->model->n ? own : e->system->velocity[own];
+}
+
+static void emit_places_of_moved(const struct emitter *e)
+{
+	const int own = e->model->spec->joined.own, stride = e->model->spec->joined.stride;
+	const int states = e->system->states, columns = contacts(e)->columns;
+	int *column = ARRAY(int, (size_t)states), *of = ARRAY(int, (size_t)states);
+	int *time = ARRAY(int, (size_t)columns);
+	for (int k = 0; k < columns; k++)
+		time[k] = -1;
+	for (int i = 0; i < states; i++) {
+		const int coord = e->system->coord[i], k = coord < own ? -1 : (coord - own) / stride;
+		const int j = k < 0 ? coord : (coord - own) % stride;
+		column[i] = j < own ? k : -1;
+		of[i] = j < own ? state_of_own(e, j, i) : i;
+		if (j == own)
+			time[k] = i;
+	}
+	say(e, "\n/* Derivatives: of each state the column that it is of, -1: of none; the state that it is of; of "
+	       "each column that of t */\n");
+	emit_int_list(e, "moved_column_of", states, column);
+	emit_int_list(e, "moved_from", states, of);
+	emit_int_list(e, "moved_time", columns, time);
+}
+
+static const struct series_hold *moved_hold(const struct contacts *c, int row)
+{
+	return &c->hold[c->holds + row];
+}
+
+static void emit_watches_of_moved(const struct emitter *e)
+{
+	const struct contacts *c = contacts(e);
+	const int rows = c->forces - c->holds, impacts = c->series_impacts * c->columns;
+	int *velocity = ARRAY(int, (size_t)rows + 1), *pull = ARRAY(int, 2 * (size_t)rows + 1);
+	int *place = ARRAY(int, (size_t)impacts + 1);
+	for (int i = 0; i < rows; i++) {
+		velocity[i] = moved_hold(c, i)->velocity;
+		for (int up = 0; up < 2; up++)
+			pull[2 * i + up] = watch_or_none(moved_hold(c, i)->pull[up]);
+	}
+	for (int i = 0; i < impacts; i++)
+		place[i] = c->series_impact[i / c->columns].slope[i % c->columns];
+	say(e, "\n/* Watches of what is held, column by column, and of what lets it go; of guards */\n");
+	emit_int_list(e, "moved_velocity", rows, velocity);
+	emit_int_list(e, "moved_pull", 2 * rows, pull);
+	emit_int_list(e, "moved_place", impacts, place);
+}
+
+/* Places are put back along the direction of velocities. */
+static void emit_back_of_moved(const struct emitter *e)
+{
+	const struct contacts *c = contacts(e);
+	const int states = e->system->states, rows = c->forces - c->holds;
+	const int size[] = { rows > 0 ? 2 * rows : 1, states };
+	double *back = ARRAY(double, (size_t)(size[0] * states));
+	int *watch = ARRAY(int, (size_t)(size[0] * states));
+	for (int i = 0; i < size[0] * states; i++)
+		watch[i] = -1;
+	for (int i = 0; i < 2 * rows * states; i++) {
+		const struct series_hold *hold = moved_hold(c, i / states / 2);
+		const int state = i % states, coord = e->system->coord[state];
+		const int from = i / states % 2 == 0                                       ? state
+				 : state < e->model->n && e->system->velocity[coord] >= 0 ? e->system->velocity[coord]
+											  : -1;
+		back[i] = from >= 0 ? hold->back[from] : 0;
+		watch[i] = from >= 0 ? watch_or_none(hold->back_watch[from]) : -1;
+	}
+	emit_array(e, "Of each what is taken from the states for a velocity of 1, for a place of 1", "moved_back", 2,
+		   size, back, NULL);
+	emit_int_list(e, "moved_back_watch", size[0] * states, watch);
+}
+
+static void emit_moved(const struct emitter *e)
+{
+	if (contacts(e)->columns == 0)
+		return;
+	emit_places_of_moved(e);
+	emit_watches_of_moved(e);
+	emit_back_of_moved(e);
+	say(e, "static const pl_moved $n_moved = {\n"
+	       "    %d, $n_moved_column_of, $n_moved_from, $n_moved_time, $n_moved_velocity, $n_moved_pull,\n"
+	       "    $n_moved_place, $n_moved_back[0], $n_moved_back_watch\n};\n", contacts(e)->columns);
+}
+
+bool moves_derivatives(const struct emitter *e)
+{
+	return meets_contacts(e) && contacts(e)->columns > 0;
+}
+
+void emit_moved_columns(const struct emitter *e)
+{
+	if (moves_derivatives(e))
+		say_macro(e, "MOVED", integer_text(contacts(e)->columns));
 }
 
 void emit_event_tables(const struct emitter *e)
@@ -134,6 +236,7 @@ void emit_event_tables(const struct emitter *e)
 				  watch_or_none(c->conflict[i].hold), c->conflict[i].side);
 	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n",
 	    *conflict ? conflict : "{0u, -1, 0}");
+	emit_moved(e);
 	emit_events(e, "events", "series_switching", "event_watch");
 }
 

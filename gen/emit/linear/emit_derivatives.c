@@ -6,6 +6,7 @@
 #include "emit/state.h"
 #include "emit/steps.h"
 #include "emit/regions/regions.h"
+#include "emit/series/series.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
 #include "step/regions/regions.h"
@@ -149,13 +150,15 @@ void emit_derivative_declarations(const struct emitter *e)
 
 /* ---- a block's model as an emitter of its own, whose numbers stand elsewhere ---- */
 
-/* Of a state of the block: the column that it is of, from 0; NONE: it is a state itself. *state: which */
+/* Of a state of the block: the column that it is of, from 0; NONE: it is a state itself. *state: which; NONE: it is the
+ * derivative of t, and 0 */
 static int column_of(const struct model *written, const struct derivative_block *block, int place, int *state)
 {
 	const struct model *model = block->step->model;
-	const int coord = model->system.coord[place], own = coord % written->n;
-	*state = place >= model->n ? written->system.velocity[own] : own;
-	return coord < written->n ? NONE : block->first + coord / written->n - 1;
+	const int n = written->n, stride = model->spec->joined.stride, coord = model->system.coord[place];
+	const int own = coord < n ? coord : (coord - n) % stride;
+	*state = own == n ? NONE : place >= model->n ? written->system.velocity[own] : own;
+	return coord < n || own == n ? NONE : block->first + (coord - n) / stride;
 }
 
 static const char **places_of_states(const struct model *written, const struct derivative_block *block)
@@ -307,11 +310,13 @@ static void emit_block_beside(const struct emitter *e, int number)
 	const int states = b->system->states, inputs = given_inputs(b);
 	int *column = ARRAY(int, (size_t)states), *state = ARRAY(int, (size_t)states);
 	int *input = ARRAY(int, (size_t)inputs + 1);
-	for (int i = 0; i < states; i++)
+	for (int i = 0; i < states; i++) {
 		column[i] = column_of(e->step->model->written, block, i, &state[i]);
+		state[i] = state[i] == NONE ? -1 : state[i];
+	}
 	for (int i = 0; i < inputs; i++)
 		input[i] = i < given_inputs(e) ? i : input_of_seed(e, block, i);
-	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state%s */\n", e->name,
+	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state, -1: it is 0%s */\n", e->name,
 	    inputs ? "; of each input the model's" : "");
 	emit_int_list(b, "moved_column", states, column);
 	emit_int_list(b, "moved_state", states, state);
@@ -323,7 +328,8 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "OWN_OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
 		   { "TUNED", b->step->is.tuned },
-		   { "FROM", block->first }, { "MOVED", block->columns }, { "DECLARED", e->model->declared_outputs });
+		   { "FROM", block->first }, { "WIDE", block->columns }, { "DECLARED", e->model->declared_outputs });
+	emit_moved_columns(b);
 	say(e, "#define PL_OF(name) %s_##name\n"
 	       "#define PL_OF_TYPE %s\n"
 	       "#define PL_ENDED(b) %s\n"

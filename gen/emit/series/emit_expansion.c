@@ -247,6 +247,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
 		   { "AT", e->step->series.emitted }, { "CONSTRAINTS", e->model->equations.correction != NULL },
 		   { "MASSES", moving_masses(e) });
+	emit_moved_columns(e);
 	if (has_switching(e))
 		emit_switching_macros(e);
 	if (looks_at_tolerance(e))

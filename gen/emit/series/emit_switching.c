@@ -21,7 +21,7 @@ void emit_switching_types(const struct emitter *e)
 	       "    uint64_t total;       /* crossings since init or set */\n"
 	       "    int crossings;        /* in the last step */\n"
 	       "    int placed;           /* 0: a state was set, its intervals are not known%s */\n"
-	       "%s%s"
+	       "%s%s%s"
 	       "    int interval[%d];      /* of each switching function */\n"
 	       "    pl_crossing last;     /* which the state may not have left behind; expression -1: none */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n"
@@ -33,6 +33,7 @@ void emit_switching_types(const struct emitter *e)
 	    : "",
 	    !meets_contacts(e) || !e->step->collocation
 		? "" : "    pl_chain chain;       /* impacts that follow each other */\n",
+	    moves_derivatives(e) ? "    pl_doubt doubt;       /* of derivatives, in the last step */\n" : "",
 	    expansion(e)->functions);
 }
 

@@ -76,6 +76,8 @@ void emit_switching_macros(const struct emitter *e);             /* what chosen.
 /* ---- emit_events.c: impacts and friction beside a series ---- */
 
 bool meets_contacts(const struct emitter *e);
+bool moves_derivatives(const struct emitter *e); /* of their states, through events */
+void emit_moved_columns(const struct emitter *e);
 int  terms_of_events(const struct emitter *e);                   /* expressions and watches */
 void emit_event_tables(const struct emitter *e);
 void emit_events_along(const struct emitter *e);                 /* the same, of polynomials of each */

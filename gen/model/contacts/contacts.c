@@ -7,6 +7,16 @@
 #include "contacts.h"
 #include "inner.h"
 
+/* The derivative that a form over states and their derivatives is, by the last coordinate in it */
+static int column_of_form(const struct building *b, const struct form *form)
+{
+	int last = 0;
+	for (int i = 0; i < form->terms; i++)
+		if (form->term[i].basis.kind == BASIS_COORD && form->term[i].basis.index > last)
+			last = form->term[i].basis.index;
+	return last < b->spec->joined.own ? 0 : (last - b->spec->joined.own) / b->spec->joined.stride;
+}
+
 /* Its index; -1: it is none */
 static int drag_of(const struct model *model, const struct atom *atom)
 {
@@ -84,19 +94,22 @@ static void add_drag(struct building *b, const struct atom *a)
 		if (basis->kind == BASIS_ATOM && loads_change(&model->system))
 			error(a->node->child[0]->start, "scheme exact takes others beside what is piecewise linear",
 			      "beside a series the velocity of friction has one formula for all time");
-		if (basis->kind == BASIS_ATOM || is_highest(&b->model->frame, basis))
+		if ((basis->kind == BASIS_ATOM && !a->node->follows) || is_highest(&b->model->frame, basis))
 			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
 			      "the velocity of friction is linear in velocities");
 	}
 	RATIONAL start = ZERO;
 	bool reads = false;
-	for (int i = 1; i < a->operands; i++) {
+	for (int i = 1; i < a->operands; i++)
 		reads = reads_multipliers(b, a->node->child[i], a->operand[i]) || reads;
+	for (int i = 1; i < a->operands && !a->node->follows; i++)
 		check_force(a->node->child[i], a->operand[i], start, NULL);
-	}
+	if (reads && b->spec->joined.columns > 0)
+		error(a->node->at, NULL, "a sensitivity beside friction by multipliers is not built yet");
 	struct drag *drag = MORE(model->contacts.drag, model->contacts.drags);
-	*drag = (struct drag){ .atom = a, .velocity = v, .rate = rate_of_form(b, v), .force = a->operand[1],
-			       .rest = a->operand[a->operands - 1] };
+	*drag = (struct drag){ .atom = a, .velocity = v, .force = a->operand[1], .rest = a->operand[a->operands - 1],
+			       .of = -1 };
+	drag->rate = a->node->follows ? rate_with_atoms(b, v) : rate_of_form(b, v);
 	if (reads)
 		derive_force(b, drag);
 	find_moving_drag(b, drag);
@@ -125,6 +138,25 @@ static void find_drags(struct building *b)
 			if (is_friction(a))
 				add_drag(b, a);
 		}
+	}
+}
+
+/* Derivatives of friction: of a vector's components in their order */
+static void find_followed(struct building *b)
+{
+	struct model_contacts *c = &b->model->contacts;
+	bool *taken = ARRAY(bool, (size_t)(c->drags * (b->spec->joined.columns + 1)));
+	for (int i = 0; i < c->drags; i++) {
+		const struct node *of = c->drag[i].atom->node->follows;
+		const int column = of ? column_of_form(b, c->drag[i].velocity) : 0;
+		for (int k = 0; of && k < c->drags && c->drag[i].of < 0; k++)
+			if (c->drag[k].atom->node == of && !taken[column * c->drags + k]) {
+				c->drag[i].of = k;
+				taken[column * c->drags + k] = true;
+			}
+		if (of && c->drag[i].of < 0)
+			error(of->at, "as a param of a load or a stiffness it has one",
+			      "friction of no force has no derivative");
 	}
 }
 
@@ -209,13 +241,31 @@ void find_contacts(struct building *b)
 {
 	for (int i = 0; i < b->model->contacts.impacts; i++) {
 		struct impact *impact = &b->model->contacts.impact[i];
-		if (impact->moves)
+		if (impact->moves && impact->when->restitution)
 			find_moving_impact(b, impact);
+		else if (impact->moves)
+			find_bounce_with_slopes(b, impact);
 		else if (impact->bounces)
 			impact->in->press = rate_of_form(b, impact->in->speed);
 	}
 	find_drags(b);
+	find_followed(b);
 	find_masses(b);
+}
+
+/* What derivatives of an impact have */
+static void place_loads_of_slope(struct building *b, const struct impact_law *law, const struct impact_slope *slope)
+{
+	place_loads_within(b, slope->guard);
+	place_loads_within(b, slope->speed);
+	for (int k = 0; k < slope->jumps; k++)
+		place_loads_within(b, slope->jump[k].form);
+	for (int j = 0; j < b->model->n && law->moving; j++) {
+		place_loads_within(b, slope->moving->gradient[j]);
+		place_loads_within(b, slope->moving->push[j]);
+	}
+	if (law->moving)
+		place_loads_within(b, slope->moving->rest);
 }
 
 /* Of what moves; their derivatives have no other */
@@ -244,6 +294,8 @@ void place_contact_loads(struct building *b)
 		}
 		if (bounces)
 			place_loads(b, impact_law->press);
+		for (int k = 0; k < b->spec->joined.columns; k++)
+			place_loads_of_slope(b, impact_law, &impact_law->slope[k]);
 		for (int k = 0; k < impact_law->jumps; k++)
 			place_loads(b, impact_law->jump[k].form);
 		for (int k = 0; k < impact_law->jumps && bounces; k++)
@@ -253,6 +305,12 @@ void place_contact_loads(struct building *b)
 		place_loads_that_move(b, model->contacts.drag[i].moving);
 		place_loads(b, model->contacts.drag[i].velocity);
 		place_loads(b, model->contacts.drag[i].rate);
+		if (model->contacts.drag[i].of >= 0) {
+			place_loads_within(b, model->contacts.drag[i].velocity);
+			place_loads_within(b, model->contacts.drag[i].rate);
+			place_loads_within(b, model->contacts.drag[i].force);
+			place_loads_within(b, model->contacts.drag[i].rest);
+		}
 		place_loads(b, model->contacts.drag[i].force);
 		place_loads(b, model->contacts.drag[i].rest);
 	}

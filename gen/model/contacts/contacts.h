@@ -30,10 +30,18 @@ struct impact_law {                 /* what an impact is in one segment of time 
 	mpq_t *direction;           /* d, per coordinate */
 	struct moving_contact *moving; /* in its place; there are no jumps then; NULL: d is constant */
 	struct jump *still;         /* its jumps if e were 0 */
+	struct impact_slope *slope; /* per derivative of the equations */
 	struct output *speed_row;
 	int function;               /* its guard is a multiple of this one, less a breakpoint, */
 	mpq_t at, factor;           /* guard = factor (switching function - at) */
 	bool upward;                /* which it passes this way */
+};
+struct impact_slope {               /* what follows a param of it, over the states and their derivatives */
+	struct form *guard, *speed, *press; /* turned as the guard is */
+	mpq_t restitution;
+	int jumps;
+	struct jump *jump;          /* of a `when` */
+	struct moving_contact *moving; /* of a stop: its force acts on the derivatives */
 };
 struct impact {                     /* of `when`, or of a stop */
 	const struct when *when;
@@ -76,6 +84,7 @@ struct drag {
 	struct form **by;
 	bool curved;                /* these depend on multipliers */
 	struct moving_contact *moving; /* NULL: what its force does is constant */
+	int of;                     /* it is the derivative of this one, by a column; -1: of none */
 };
 struct hold {                       /* a state that a region gives: of what sticks a velocity follows from the others */
 	int state;

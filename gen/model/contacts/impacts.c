@@ -90,6 +90,29 @@ static void collect_jumps(struct building *b, const struct when *when, struct im
 	}
 }
 
+/* Of a spec with its derivatives */
+static void collect_slopes(struct building *b, const struct when *when, struct impact_law *law)
+{
+	law->slope = ARRAY(struct impact_slope, (size_t)when->slopes);
+	for (int k = 0; k < when->slopes; k++) {
+		const struct when_slope *from = &when->slope[k];
+		struct impact_slope *to = &law->slope[k];
+		struct form *guard = scalar_form(b, from->guard);
+		to->guard = is_rising(when) ? guard : form_difference(NEW(struct form), guard);
+		mpq_init(to->restitution);
+		if (from->restitution)
+			collect_constant(&b->collector, from->restitution, to->restitution);
+		to->jump = ARRAY(struct jump, (size_t)when->jumps);
+		for (to->jumps = 0; to->jumps < when->jumps; to->jumps++) {
+			const int state = state_at(b, when->jump[to->jumps].target), n = b->model->n;
+			const int own = b->model->system.coord[state];
+			const int coord = b->spec->joined.own + k * b->spec->joined.stride + own;
+			to->jump[to->jumps].state = state < n ? coord : b->model->system.velocity[coord];
+			to->jump[to->jumps].form = scalar_form(b, from->jump[to->jumps]);
+		}
+	}
+}
+
 static void collect_impact(void *context)
 {
 	struct collecting *work = context;
@@ -101,6 +124,7 @@ static void collect_impact(void *context)
 	if (when->restitution)
 		check_stop(b, when, impact_law->restitution, impact_law->gap);
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
+	collect_slopes(b, when, impact_law);
 	if (!when->restitution || !keeps_smooth(b, left) || !keeps_smooth(b, right)) {
 		check_linear(b, side[0], left, "a guard");
 		check_linear(b, side[1], right, "a guard");
@@ -214,20 +238,6 @@ static struct form *behind(const struct building *b, const struct impact_law *im
 			form_add_basis(sum, form->term[i].basis, form->term[i].factor);
 	}
 	return sum;
-}
-
-/* a = ratio b + rest, rest constant; b has terms that are not */
-static bool is_along(struct building *b, const struct form *a, const struct form *along, mpq_ptr ratio, mpq_ptr rest)
-{
-	const struct form_term *last = &along->term[along->terms - 1], *same = form_find(a, &last->basis);
-	mpq_set_ui(ratio, 0, 1);
-	if (same)
-		mpq_div(ratio, same->factor, last->factor);
-	const struct form *off = form_difference(a, form_scale(along, ratio));
-	if (!is_constant(off))
-		return false;
-	constant_value(&b->collector, off, rest);
-	return true;
 }
 
 static bool reads_highest(const struct building *b, const struct form *form)
@@ -405,6 +415,12 @@ static void report_bounce_changes(const struct building *b, const struct when *w
 	      readable_text(b->model->system.change[segment - 1]), bounces ? "before" : "from");
 }
 
+static void find_slope_speeds(struct building *b, const struct when *when, struct impact_law *law)
+{
+	for (int k = 0; k < when->slopes; k++)
+		law->slope[k].speed = rate_with_atoms(b, law->slope[k].guard);
+}
+
 static void build_impact(void *context)
 {
 	struct indexed *work = context;
@@ -414,7 +430,8 @@ static void build_impact(void *context)
 	for (int s = 0; s < b->model->system.segments; s++) {
 		struct impact_law *impact_law = &impact->in[s];
 		bool bounces = when->restitution != NULL;
-		if (when->restitution && contact_moves(b, impact_law->guard)) {
+		find_slope_speeds(b, when, impact_law);
+		if (when->restitution && (b->spec->joined.columns > 0 || contact_moves(b, impact_law->guard))) {
 			impact_law->speed = speed_that_moves(b, when, impact_law->guard);
 			impact->bounces = impact->moves = true;
 			continue;               /* the rest once the equations are there for all time */
@@ -428,7 +445,8 @@ static void build_impact(void *context)
 			report_bounce_changes(b, when, s, bounces);
 		impact->bounces = bounces;
 		check_jump(b, when, impact_law);
-		if (bounces)
+		impact->moves = bounces && b->spec->joined.columns > 0;
+		if (bounces && !impact->moves)
 			still_jumps(b, impact_law);
 	}
 }

@@ -27,6 +27,10 @@ struct form *slide_velocity(const struct switching *s, const struct region *regi
 bool keeps_smooth(const struct building *b, const struct form *form); /* atoms that a stop may have: smooth ones */
 /* The derivative of its guard in time; a velocity in that is an error */
 struct form *speed_that_moves(struct building *b, const struct when *when, const struct form *guard);
+/* a = ratio b + rest, rest constant; b has terms that are not */
+bool is_along(struct building *b, const struct form *a, const struct form *along, mpq_ptr ratio, mpq_ptr rest);
+void find_bounce_with_slopes(struct building *b, struct impact *impact); /* of a `when` */
+struct form *rate_with_atoms(struct building *b, const struct form *form);
 /* Whether what a stop of this guard does to velocities depends on the state */
 bool contact_moves(const struct building *b, const struct form *guard);
 _Noreturn void report_velocity(const struct building *b, const struct when *when, int coord); /* in a stop */

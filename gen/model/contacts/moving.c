@@ -15,7 +15,7 @@ static struct form *rate_of_term(void *building, const struct form_term *term)
 	return rate_of_form(building, form_single(term->basis, term->factor));
 }
 
-static struct form *rate_with_atoms(struct building *b, const struct form *form)
+struct form *rate_with_atoms(struct building *b, const struct form *form)
 {
 	b->collector.equation = true;           /* highest derivatives have factors in it */
 	struct form *rate = form_rate(rates_new(&b->collector, rate_of_term, b), form);
@@ -221,11 +221,49 @@ struct form *speed_that_moves(struct building *b, const struct when *when, const
 	return rate_with_atoms(b, guard);
 }
 
+/* ---- derivatives: the force f n of a contact has the derivative f n_k + f_k n ---- */
+
+static int moved_coord(const struct building *b, int column, int coord)
+{
+	return b->spec->joined.own + column * b->spec->joined.stride + coord;
+}
+
+/* What f acts with on all coordinates: n, and n_k on their derivatives */
+static const struct form **with_slopes(struct building *b, const struct impact_law *law,
+				       const struct form *const *gradient)
+{
+	const int own = b->spec->joined.columns > 0 ? b->spec->joined.own : b->model->n;
+	const struct form **force = ARRAY(const struct form *, b->model->n);
+	for (int j = 0; j < b->model->n; j++)
+		force[j] = j < own ? gradient[j] : NEW(struct form);
+	for (int k = 0; k < b->spec->joined.columns; k++) {
+		const struct form **slope = gradient_of(b, law->slope[k].guard, 0);
+		for (int j = 0; j < own; j++)
+			force[moved_coord(b, k, j)] = slope[j];
+	}
+	return force;
+}
+
+/* ... and f_k, which holds the derivative of the guard */
+static void find_moving_slope(struct building *b, const struct impact *impact, int column,
+			      const struct form *const *gradient)
+{
+	struct impact_slope *slope = &impact->in->slope[column];
+	const struct form **force = ARRAY(const struct form *, b->model->n);
+	for (int j = 0; j < b->model->n; j++)
+		force[j] = NEW(struct form);
+	for (int j = 0; j < b->spec->joined.own; j++)
+		force[moved_coord(b, column, j)] = gradient[j];
+	slope->press = rate_with_atoms(b, slope->speed);
+	slope->moving = moving_contact(b, impact->when->guard, gradient_of(b, slope->guard, 0), force, slope->speed,
+				       slope->press);
+}
+
 void find_moving_impact(struct building *b, struct impact *impact)
 {
 	struct impact_law *law = impact->in;
 	const struct form **gradient = gradient_of(b, law->guard, 0);
-	const char *coord = unsymmetric_mass(b, gradient);
+	const char *coord = b->spec->joined.columns > 0 ? NULL : unsymmetric_mass(b, gradient);
 	if (coord)
 		error(impact->when->at, "energy T and V give such equations, or each equation over the factor of its "
 		      "momentum",
@@ -236,9 +274,111 @@ void find_moving_impact(struct building *b, struct impact *impact)
 			error(impact->when->at, "a mass, or an equation with its second derivative",
 			      "an impact needs a mass: %s is of first order", b->model->names.coord[j]);
 	law->press = rate_with_atoms(b, law->speed);
-	law->moving = moving_contact(b, impact->when->guard, gradient, gradient, law->speed, law->press);
+	const struct form **force = with_slopes(b, law, gradient);
+	law->moving = moving_contact(b, impact->when->guard, gradient, force, law->speed, law->press);
+	for (int k = 0; k < b->spec->joined.columns; k++)
+		find_moving_slope(b, impact, k, gradient);
 	if (sign_at_start(b, law->moving) == -1)
 		error(impact->when->at, NULL, "the masses at this stop do not make a force part them");
+}
+
+bool is_along(struct building *b, const struct form *a, const struct form *along, mpq_ptr ratio, mpq_ptr rest)
+{
+	const struct form_term *last = &along->term[along->terms - 1], *same = form_find(a, &last->basis);
+	mpq_set_ui(ratio, 0, 1);
+	if (same)
+		mpq_div(ratio, same->factor, last->factor);
+	const struct form *off = form_difference(a, form_scale(along, ratio));
+	if (!is_constant(off))
+		return false;
+	constant_value(&b->collector, off, rest);
+	return true;
+}
+
+/* ---- bounces as jumps: of v - (1 + e) d s follows v_k - (1 + e) d s_k - ((1 + e) d)_k s ---- */
+
+/* Of a jump's derivative what is taken from it for s = 1, ((1 + e) d)_k; false: it is no such derivative */
+static bool slope_of_jump(struct building *b, const struct impact_law *law, const struct impact_slope *slope, int jump,
+			  mpq_ptr factor)
+{
+	const struct linear *system = &b->model->system;
+	const int own = system->coord[law->jump[jump].state], moved = system->coord[slope->jump[jump].state];
+	struct basis basis = { .kind = BASIS_COORD, .index = moved, .order = 1 };
+	RATIONAL part = RATIO(1, 1), rest = ZERO;
+	mpq_add(part, part, law->restitution);
+	mpq_mul(part, part, law->direction[own]);
+	struct form *less = form_difference(form_unit(basis), slope->jump[jump].form);
+	less = form_difference(less, form_scale(slope->speed, part));
+	return is_along(b, less, law->speed, factor, rest) && mpq_sgn(rest) == 0;
+}
+
+static void add_share(const struct form *speed, int coord, mpq_srcptr factor, mpq_ptr sum)
+{
+	struct basis basis = { .kind = BASIS_COORD, .index = coord, .order = 1 };
+	const struct form_term *term = form_find(speed, &basis);
+	if (term)
+		rational_addmul(sum, term->factor, factor);
+}
+
+/* e_k of (1 + e) = n (1 + e) d, and d_k; per coordinate, on the derivatives */
+static void split_slope(struct building *b, struct impact *impact, int column, mpq_t *direction)
+{
+	const struct impact_law *law = impact->in;
+	struct impact_slope *slope = &impact->in->slope[column];
+	RATIONAL back = RATIO(1, 1), part = ZERO;
+	mpq_add(back, back, law->restitution);
+	mpq_set_ui(slope->restitution, 0, 1);
+	for (int i = 0; i < law->jumps; i++) {
+		const int own = b->model->system.coord[law->jump[i].state], moved = moved_coord(b, column, own);
+		if (!slope_of_jump(b, law, slope, i, direction[moved]))
+			error(impact->when->at, "stop x at 0.1 restitution 0.8 has one",
+			      "no derivative is found of this bounce");
+		add_share(law->speed, own, direction[moved], slope->restitution);
+		mpq_mul(part, back, law->direction[own]);
+		add_share(slope->speed, own, part, slope->restitution);
+	}
+	for (int i = 0; i < law->jumps; i++) {
+		const int own = b->model->system.coord[law->jump[i].state], moved = moved_coord(b, column, own);
+		rational_submul(direction[moved], slope->restitution, law->direction[own]);
+		mpq_div(direction[moved], direction[moved], back);
+	}
+}
+
+/* A contact that presses along d, whatever the masses */
+static struct moving_contact *contact_along(struct building *b, const struct form *speed, const struct form *press,
+					    mpq_t *direction)
+{
+	const int n = b->model->n;
+	struct moving_contact *c = NEW(struct moving_contact);
+	*c = (struct moving_contact){ gradient_of(b, speed, 1), ARRAY(const struct form *, n),
+				      ARRAY(const struct form *, n), form_at_rest(b, press), -1, ARRAY(double, n) };
+	for (int j = 0; j < n; j++) {
+		c->force[j] = NEW(struct form);
+		c->push[j] = form_constant(direction[j]);
+		c->sample[j] = c->gradient[j]->terms ? 1 : 0;
+	}
+	return c;
+}
+
+void find_bounce_with_slopes(struct building *b, struct impact *impact)
+{
+	struct impact_law *law = impact->in;
+	mpq_t *all = rationals((size_t)b->model->n);
+	for (int j = 0; j < b->spec->joined.own; j++)
+		mpq_set(all[j], law->direction[j]);
+	for (int k = 0; k < b->spec->joined.columns; k++) {
+		struct impact_slope *slope = &law->slope[k];
+		mpq_t *direction = rationals((size_t)b->model->n);
+		slope->speed = form_at_rest(b, slope->speed); /* t_k' is 0 */
+		split_slope(b, impact, k, all);
+		for (int j = 0; j < b->spec->joined.own; j++)
+			mpq_set(direction[moved_coord(b, k, j)], law->direction[j]);
+		slope->press = rate_with_atoms(b, slope->speed);
+		slope->moving = contact_along(b, slope->speed, slope->press, direction);
+	}
+	law->press = rate_with_atoms(b, law->speed);
+	law->moving = contact_along(b, law->speed, law->press, all);
+	law->jumps = 0;
 }
 
 void find_masses(struct building *b)
@@ -253,7 +393,7 @@ void find_moving_drag(struct building *b, struct drag *drag)
 {
 	const struct basis basis = { .kind = BASIS_ATOM, .index = drag->atom->index, .atom = drag->atom };
 	const struct form **force = ARRAY(const struct form *, b->model->n);
-	bool moves = holds_atom(drag->velocity);
+	bool moves = holds_atom(drag->velocity) || b->spec->joined.columns > 0;
 	for (int j = 0; j < b->model->n; j++) {
 		const struct form_term *term =
 			form_find(residual_as_written(b->full, b->owner, b->owner[j]), &basis);

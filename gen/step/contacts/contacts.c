@@ -48,6 +48,10 @@ static void make_hold(struct constraints *all, int index)
 	const struct constraint *h = &all->constraint[index];
 	const struct model *model = w->step->model;
 	struct series_hold *hold = &all->c->hold[index];
+	if (h->of != NONE) {
+		*hold = all->c->hold[h->of];
+		return;
+	}
 	*hold = (struct series_hold){ .impact = h->impact, .pull = { NONE, NONE } };
 	RATIONAL factor = ZERO;
 	struct division d = h->node ? divide_made(w, h->velocity, factor)
@@ -61,10 +65,10 @@ static void make_hold(struct constraints *all, int index)
 	add_twin(&w->x->function[d.function], d.breakpoint);
 }
 
-/* What it can hold, no less than its force: S > F ? S : F */
-static int rest_sequence(struct sequencing *w, const struct drag *drag)
+/* What it can hold, no less than its force: S > F ? S : F, or of that what follows a param */
+static int rest_sequence(struct sequencing *w, const struct drag *drag, const struct drag *of)
 {
-	int rest = force_sequence(w, drag->rest);
+	int rest = force_sequence(w, drag->rest, of->rest);
 	const struct form *more = less_in_velocity(drag->rest, drag->force, drag->velocity);
 	if (never_falls_below(more))
 		return rest;
@@ -72,9 +76,15 @@ static int rest_sequence(struct sequencing *w, const struct drag *drag)
 	struct sum sum = { 0 };
 	RATIONAL one = RATIO(1, 1);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, more, rest), 0, one);
-	int force = force_sequence(w, drag->force);
+	int force = force_sequence(w, drag->force, of->force);
 	sum_add(&sum, TERM_SEQUENCE, positive_sequence(w, less, force), 0, one);
 	return sum_sequence(w, &sum);
+}
+
+/* The friction that decides, of a derivative's, too */
+static const struct drag *drag_of(const struct constraints *all, int index)
+{
+	return &all->w->step->model->contacts.drag[all->constraint[held_by(all, index)].drag];
 }
 
 static void make_slip(struct constraints *all, int index)
@@ -83,8 +93,8 @@ static void make_slip(struct constraints *all, int index)
 	struct constraint *h = &all->constraint[index];
 	const struct series_hold *hold = &all->c->hold[index];
 	if (h->drag != NONE && !w->step->model->contacts.drag[h->drag].by)
-		h->slips = along_sliding(w, hold,
-					 force_sequence(w, w->step->model->contacts.drag[h->drag].force));
+		h->slips = along_sliding(w, hold, force_sequence(w, drag_of(all, index)->force,
+								 w->step->model->contacts.drag[h->drag].force));
 }
 
 /* ---- forces ---- */
@@ -169,6 +179,8 @@ static bool are_dependent(const struct constraints *all, int count, const int *w
 /* Sets of few come first, so that those with a conflict in them are not noted again. */
 static void note_conflicts(const struct constraints *all, int members, const int *member)
 {
+	while (members > 0 && all->constraint[member[members - 1]].of != NONE)
+		members--;                      /* derivatives are held with what they follow */
 	for (int size = 2; size <= members; size++)
 		for (int set = 0; set < 1 << members; set++) {
 			int count = 0, *which = ARRAY(int, members);
@@ -248,12 +260,14 @@ static int *members_of(const struct constraints *all, int index, int *members)
 {
 	enum { MOST = 4 };
 	const struct constraint *h = &all->constraint[index];
-	int *member = ARRAY(int, all->constraints);
+	int *member = ARRAY(int, all->constraints), own = 0;
 	*members = 0;
 	for (int i = 0; i < all->constraints; i++)
-		if (all->constraint[i].group == h->group)
+		if (all->constraint[i].group == h->group) {
 			member[(*members)++] = i;
-	if (*members > MOST)
+			own += all->constraint[i].of == NONE;
+		}
+	if (own > MOST)
 		error(h->node ? h->node->at : all->w->step->model->contacts.impact[h->impact].when->at,
 		      "a piecewise-linear model takes more",
 		      "beside what is not piecewise linear at most %d frictions and contacts act on each other", MOST);
@@ -280,18 +294,6 @@ static void make_forces(struct constraints *all)
 
 /* ---- what the search of events looks at ---- */
 
-static int watch(struct sequencing *w, int sequence, bool full)
-{
-	struct contacts *c = w->x->contacts;
-	for (int i = 0; i < c->watches; i++)
-		if (c->watch[i].sequence == sequence) {
-			c->watch[i].full |= full;
-			return i;
-		}
-	*MORE(c->watch, c->watches) = (struct watch){ .sequence = sequence, .full = full };
-	return c->watches - 1;
-}
-
 /* The force that it would take to hold this one, the others as they are: -(bare + answers of the others)/answer */
 static struct sum needed_force(const struct constraints *all, int index, long sign)
 {
@@ -313,6 +315,7 @@ static int pull_sequence(const struct constraints *all, int index, long sign, co
 {
 	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
+	const struct drag *decides = drag ? drag_of(all, index) : NULL;
 	RATIONAL minus = RATIO(-1, 1), factor = ZERO;
 	struct sum sum = { 0 }, rate = { 0 };
 	mpq_set_si(factor, sign, 1);
@@ -321,8 +324,8 @@ static int pull_sequence(const struct constraints *all, int index, long sign, co
 	else
 		sum = needed_force(all, index, sign);
 	if (drag)
-		sum_add(&sum, TERM_SEQUENCE, rest_sequence(w, drag), 0, minus);
-	if (!h->solved)
+		sum_add(&sum, TERM_SEQUENCE, rest_sequence(w, decides, drag), 0, minus);
+	if (!h->solved || h->of != NONE)
 		return sum_sequence(w, &sum);
 	if (!drag || drag->rest == drag->force) {
 		sum_add(&rate, TERM_SEQUENCE, h->bare, 0, factor);
@@ -365,14 +368,15 @@ static void watch_hold(struct constraints *all, int index)
 	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
 	struct series_hold *hold = &all->c->hold[index];
+	const bool full = h->of == NONE;        /* of a derivative its value is looked at */
 	hold->velocity = watch(w, sequence_of_form(w, h->velocity), false);
 	find_back(all, index, hold);
 	if (h->drag == NONE) {
-		hold->pull[!hold->above] = watch(w, pull_sequence(all, index, -1, NULL), true);
+		hold->pull[!hold->above] = watch(w, pull_sequence(all, index, -1, NULL), full);
 	}
 	for (int up = 0; up < 2 && h->drag != NONE; up++) {
 		const struct drag *drag = &w->step->model->contacts.drag[h->drag];
-		hold->pull[up] = watch(w, pull_sequence(all, index, up == hold->above ? 1 : -1, drag), true);
+		hold->pull[up] = watch(w, pull_sequence(all, index, up == hold->above ? 1 : -1, drag), full);
 	}
 }
 
@@ -416,6 +420,14 @@ static void assign_moving(struct constraints *all, int index, int hold, bool sti
 	}
 }
 
+static void assign_bounce(struct constraints *all, int index, int hold, bool still)
+{
+	if (all->c->columns > 0)
+		assign_with_slopes(all, hold, still);
+	else
+		assign_moving(all, index, hold, still);
+}
+
 /* Places are put back along the same direction as velocities. */
 static void watch_moving_bounce(struct constraints *all, int index)
 {
@@ -425,11 +437,14 @@ static void watch_moving_bounce(struct constraints *all, int index)
 	for (int j = 0; j < w->system->n; j++)
 		if (w->system->velocity[j] >= 0)
 			impact->back_watch[j] = c->hold[impact->hold].back_watch[w->system->velocity[j]];
+	for (int j = 0; j < w->system->n && c->columns > 0; j++)
+		if (w->system->velocity[j] >= 0)
+			impact->back[j] = c->hold[impact->hold].back[w->system->velocity[j]];
 	impact->jump = c->assignments;
-	assign_moving(all, index, impact->hold, false);
+	assign_bounce(all, index, impact->hold, false);
 	impact->still = c->assignments;
 	impact->jumps = impact->still - impact->jump;
-	assign_moving(all, index, impact->hold, true);
+	assign_bounce(all, index, impact->hold, true);
 }
 
 static void watch_bounce(struct constraints *all, int index)
@@ -466,10 +481,17 @@ static void watch_impact(struct constraints *all, int index)
 		series_impact->back_watch[i] = NONE;
 	mpq_inv(factor, factor);
 	series_impact->per = round_rational(factor);
-	for (int i = 0; i < all->constraints; i++)
+	for (int i = 0; i < all->own; i++)
 		if (all->constraint[i].impact == index)
 			series_impact->hold = i;
 	assign(all, impact->in->jump, impact->in->jumps);
+	series_impact->slope = ARRAY(int, all->c->columns);
+	for (int k = 0; k < all->c->columns; k++) {
+		const struct impact_slope *slope = &impact->in->slope[k];
+		series_impact->slope[k] = watch(w, sequence_of_form(w, slope->guard), false);
+		assign(all, slope->jump, impact->bounces ? 0 : slope->jumps);
+		series_impact->jumps += impact->bounces ? 0 : slope->jumps;
+	}
 	series_impact->place = watch(w, sequence_of_form(w, impact->in->guard), false);
 	series_impact->speed = series_impact->place;
 	if (series_impact->hold == NONE)
@@ -482,23 +504,6 @@ static void watch_impact(struct constraints *all, int index)
 }
 
 /* ---- the whole ---- */
-
-/* The only state of a velocity that no load moves; else NONE */
-static int only_state(const struct sequencing *w, const struct constraint *h)
-{
-	int state = NONE;
-	if (h->moving && h->moving->only >= 0)
-		return w->system->velocity[h->moving->only];
-	for (int i = 0; i < h->velocity->terms; i++) {
-		const struct basis *basis = &h->velocity->term[i].basis;
-		if (basis->kind <= BASIS_PI)
-			continue;
-		if (basis->kind != BASIS_COORD || state != NONE)
-			return NONE;
-		state = basis->order ? w->system->velocity[basis->index] : basis->index;
-	}
-	return state;
-}
 
 bool is_bare(const struct sequencing *w, int state)
 {
@@ -516,9 +521,9 @@ struct sum held_slope(struct sequencing *w, int state)
 	RATIONAL one = RATIO(1, 1);
 	if (c->bare[state] != NONE)
 		sum_add(&slope, TERM_SEQUENCE, c->bare[state], 0, one);
-	for (int i = 0; i < c->holds; i++)
+	for (int i = 0; i < c->forces; i++)
 		sum_add_entry(&slope, c->hold[i].force, &c->hold[i].force_direction[state], one);
-	for (int i = 0; i < c->holds; i++) {
+	for (int i = 0; i < c->forces; i++) {
 		if (c->hold[i].only != state)
 			continue;
 		int moves = sum_sequence(w, &slope);
@@ -548,7 +553,7 @@ int held_force(struct sequencing *w, int force_column)
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);
 	sum_add(&force, TERM_SEQUENCE, w->x->force[force_column], 0, one);
-	for (int i = 0; i < c->holds; i++)
+	for (int i = 0; i < c->forces; i++)
 		sum_add_entry(&force, c->hold[i].force, &c->hold[i].gives[force_column], one);
 	return sum_sequence(w, &force);
 }
@@ -567,9 +572,11 @@ void hold_contacts(struct sequencing *w)
 	c->none = all.none = sequence_of_form(w, form_number(0));
 	c->series_impacts = model->contacts.impacts;
 	c->series_impact = ARRAY(struct series_impact, model->contacts.impacts);
+	c->columns = model->spec->joined.columns;
 	find_constraints(&all);
 	c->hold = ARRAY(struct series_hold, all.constraints);
-	c->holds = all.constraints;
+	c->holds = all.own;
+	c->forces = all.constraints;
 	for (int i = 0; i < all.constraints; i++)
 		make_hold(&all, i);
 	for (int i = 0; i < all.constraints; i++)

@@ -100,10 +100,10 @@ int quotient_by_entry(struct sequencing *w, int a, const struct entry *below)
 	return sequence_of_sum(w, &sum);
 }
 
-/* A force that may become negative counts as 0 there. */
-int force_sequence(struct sequencing *w, const struct form *force)
+/* Of a force, or of what follows a param of it: where the force may become negative it counts as 0. */
+int force_sequence(struct sequencing *w, const struct form *force, const struct form *of)
 {
-	int made = sequence_of_form(w, force);
+	int made = sequence_of_form(w, of);
 	return never_falls_below(force) ? made : positive_sequence(w, force, made);
 }
 
@@ -182,7 +182,7 @@ static struct constraint *add_constraint(struct constraints *all, const struct m
 {
 	const int states = all->w->system->states;
 	struct constraint *h = MORE(all->constraint, all->constraints);
-	*h = (struct constraint){ .impact = NONE, .drag = NONE, .slips = NONE, .moving = moving,
+	*h = (struct constraint){ .impact = NONE, .drag = NONE, .of = NONE, .slips = NONE, .moving = moving,
 				  .force_direction = entries_new(states),
 				  .slope_direction = ARRAY(struct entry, states), .row = entries_new(states),
 				  .sample = ARRAY(double, states),
@@ -217,6 +217,30 @@ static void add_drag(struct constraints *all, int index)
 	rows_of_rate(all->w, h);
 }
 
+static void add_slope_of_contact(struct constraints *all, int of, int column)
+{
+	const struct impact_law *law = all->w->step->model->contacts.impact[all->constraint[of].impact].in;
+	struct constraint *h = add_constraint(all, law->slope[column].moving);
+	h->impact = all->constraint[of].impact;
+	h->velocity = law->slope[column].speed;
+	h->rate = law->slope[column].press;
+	h->of = of;
+	h->column = column;
+}
+
+/* In the order of columns, as they were found */
+static void add_slopes_of_drag(struct constraints *all, int of)
+{
+	const struct model_contacts *contacts = &all->w->step->model->contacts;
+	for (int i = 0, column = 0; i < contacts->drags; i++) {
+		if (contacts->drag[i].of != all->constraint[of].drag)
+			continue;
+		add_drag(all, i);
+		all->constraint[all->constraints - 1].of = of;
+		all->constraint[all->constraints - 1].column = column++;
+	}
+}
+
 static void add_constraints(struct constraints *all)
 {
 	const struct model *model = all->w->step->model;
@@ -224,7 +248,15 @@ static void add_constraints(struct constraints *all)
 		if (model->contacts.impact[i].bounces)
 			add_contact(all, i);
 	for (int i = 0; i < model->contacts.drags; i++)
-		add_drag(all, i);
+		if (model->contacts.drag[i].of < 0)
+			add_drag(all, i);
+	all->own = all->constraints;
+	for (int i = 0; i < all->own && all->c->columns > 0; i++)
+		if (all->constraint[i].drag != NONE)
+			add_slopes_of_drag(all, i);
+		else
+			for (int k = 0; k < all->c->columns; k++)
+				add_slope_of_contact(all, i, k);
 	for (int i = 0; i < all->constraints; i++)
 		if (all->constraint[i].moving)
 			directions_that_move(all->w, &all->constraint[i]);
@@ -232,7 +264,7 @@ static void add_constraints(struct constraints *all)
 
 static void check_answer(const struct constraint *h, const struct entry *answer)
 {
-	if (!h->node || !is_number_entry(answer))
+	if (!h->node || h->of != NONE || !is_number_entry(answer))
 		return;
 	if (mpq_sgn(answer->number) == 0)
 		error(h->node->at, "its velocity has to answer to its force", "friction cannot hold what slides there");
@@ -316,4 +348,9 @@ int bare_rate(struct sequencing *w, const struct constraint *h)
 			sum_add(&sum, TERM_SEQUENCE, bare_slope(w, state), 0, term->factor);
 	}
 	return sequence_of_sum(w, &sum);
+}
+
+int held_by(const struct constraints *all, int index)
+{
+	return all->constraint[index].of == NONE ? index : all->constraint[index].of;
 }

@@ -29,6 +29,7 @@ static int where_it_holds(const struct constraints *all, int index, int held, in
 {
 	struct sequencing *w = all->w;
 	const struct contacts *c = all->c;
+	index = held_by(all, index);
 	if (held == other)
 		return held;
 	for (int k = 0; k < c->conflicts; k++) {
@@ -186,7 +187,7 @@ static void add_reaction(struct joined *g, int k, int *slip, int *right, int *on
 	*one = sequence_of_form(w, form_number(1));
 	if (!drag || g->turn == 0)
 		return;
-	const int size = force_sequence(w, drag->force);
+	const int size = force_sequence(w, drag->force, drag->force);
 	if (drag->curved && g->turn == g->turns)
 		*one = one_where_found(g, k, size);
 	sum_add(&sum, TERM_SEQUENCE, size, 0, plus);
@@ -385,7 +386,8 @@ static void take_reactions(const struct joined *g)
 	for (int k = 0; k < g->members; k++)
 		if (reaction_of(g, k))
 			g->all->constraint[g->member[k]].slips = along_sliding(
-				w, &g->all->c->hold[g->member[k]], force_sequence(w, reaction_of(g, k)->force));
+				w, &g->all->c->hold[g->member[k]],
+				force_sequence(w, reaction_of(g, k)->force, reaction_of(g, k)->force));
 }
 
 void solve_group(const struct constraints *all, int members, int *member)

@@ -11,6 +11,7 @@ struct moving_contact;
 
 struct constraint {
 	int impact, drag;           /* one of them NONE */
+	int of, column;             /* it is the derivative of this one, by a column; NONE: of none */
 	const struct moving_contact *moving; /* NULL: its factors are numbers */
 	const struct form *velocity, *rate;
 	const struct node *node;    /* of friction */
@@ -28,14 +29,15 @@ struct constraint {
 };
 struct constraints {
 	struct sequencing *w;
-	int constraints;
+	int constraints, own;       /* own: those that are no derivatives come first */
 	struct constraint *constraint;
 	struct contacts *c;
 	int none;                   /* a sequence: 0 */
 };
 void find_constraints(struct constraints *all);
 int  bare_rate(struct sequencing *w, const struct constraint *h); /* without what holds: a sequence */
-int  force_sequence(struct sequencing *w, const struct form *force); /* of friction, no less than 0 */
+int  force_sequence(struct sequencing *w, const struct form *force, const struct form *of);
+int  held_by(const struct constraints *all, int index);     /* what holds it: itself, or what it is the derivative of */
 bool is_number_entry(const struct entry *e);
 void sum_add_entry(struct sum *sum, int sequence, const struct entry *entry, mpq_srcptr factor);
 int  entry_sequence(struct sequencing *w, const struct entry *entry);
@@ -54,5 +56,11 @@ int  rate_state(const struct sequencing *w, const struct basis *basis); /* whose
 int  along_sliding(struct sequencing *w, const struct series_hold *hold, int force); /* with the velocity's sign */
 int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
 void solve_group(const struct constraints *all, int members, int *member);
+
+/* ---- slopes.c: what is watched, and impacts with their derivatives ---- */
+
+int  watch(struct sequencing *w, int sequence, bool full);   /* full: more than its value */
+int  only_state(const struct sequencing *w, const struct constraint *h);
+void assign_with_slopes(struct constraints *all, int hold, bool still);
 
 #endif

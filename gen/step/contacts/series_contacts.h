@@ -27,6 +27,7 @@ struct series_impact {                     /* an impact */
 	int function, breakpoint;
 	bool upward;
 	int hold;                   /* in which its contact rests; NONE: it is no bounce */
+	int *slope;                 /* per derivative of the equations: a watch, of the guard's */
 	int place, speed;           /* watches: how far its guard is beyond 0; its rate */
 	int jump, still, jumps;     /* assignments, so many from each on */
 	double *back;               /* per state: what is taken from it for a guard of 1, */
@@ -43,7 +44,8 @@ struct contacts {
 	bool moves;                 /* some of it is what is watched, and no number */
 	int none, *bare;            /* sequences: 0; per state its slope without what holds, NONE: not made */
 	bool *solved;               /* per state: that is solved for, with what holds */
-	int holds;
+	int holds, forces;          /* forces: with those of derivatives, which stand behind the others, */
+	int columns;                /* so many of each */
 	struct series_hold *hold;
 	int series_impacts;
 	struct series_impact *series_impact;

@@ -273,7 +273,7 @@ void sort_watches(struct contacts *c, int states)
 		c->ways = way ? places : c->ways;
 	}
 	c->watch = sorted;
-	for (int i = 0; i < c->holds; i++) {
+	for (int i = 0; i < c->forces; i++) {
 		renumber(place, &c->hold[i].velocity);
 		renumber(place, &c->hold[i].pull[0]);
 		renumber(place, &c->hold[i].pull[1]);
@@ -283,6 +283,7 @@ void sort_watches(struct contacts *c, int states)
 		renumber(place, &c->series_impact[i].place);
 		renumber(place, &c->series_impact[i].speed);
 		renumber_all(place, states, c->series_impact[i].back_watch);
+		renumber_all(place, c->columns, c->series_impact[i].slope);
 	}
 	for (int i = 0; i < c->assignments; i++)
 		renumber(place, &c->assignment[i].watch);
