@@ -26,7 +26,7 @@
  *     PL(initial)[], PL(initial_set)[]     the first state as it is kept; the same as written */
 #include "numbers.h"
 
-/* What is kept of a state, nothing left of earlier rounding */
+/* Stores a state as written in the form that steps have (modes, momenta); its low parts become 0. */
 static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
 {
     int i;
@@ -50,7 +50,7 @@ static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
 #endif
 }
 
-/* And back, without a forced part */
+/* The state as written, read back from that form; a forced part is not added. */
 static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
 {
     int i;

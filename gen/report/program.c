@@ -520,5 +520,5 @@ void explain_program(FILE *to, const struct step *step)
 		step->refresh ? format("; every %d steps %d and %d more", step->refresh->steps,
 				       program->forcing_multiplications, program->forcing_additions)
 			      : "",
-		step->forced ? "; the state is kept less what its loads sustain" : "");
+		step->forced ? "; of the transient, without the particular solution of its loads" : "");
 }

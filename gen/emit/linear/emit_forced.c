@@ -87,7 +87,7 @@ void banner_forced(const struct emitter *e)
 	int count = 0;
 	for (int l = 0; l < e->system->loads; l++)
 		count += forced->load[l];
-	say(e, " * The state is kept less what %d load%s sustain%s: added where it is read, by %d multiplications, %d "
-	       "additions.\n", count, count == 1 ? "" : "s", count == 1 ? "s" : "", forced->multiplications,
+	say(e, " * The step has the transient: the particular solution of %d load%s is added where the state is read, "
+	       "by %d multiplications, %d additions.\n", count, count == 1 ? "" : "s", forced->multiplications,
 	    forced->additions);
 }
