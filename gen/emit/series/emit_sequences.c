@@ -185,7 +185,7 @@ void emit_expand_from(const struct emitter *e)
 	begin_function(e, format("The series of the solution from %s on: c[k] = %s^k/k! times the k-th derivative of "
 				 "y%s", has_offset(e) ? "tau after now" : "now",
 				 spans_steps(e) ? format("(%d h)", e->model->truncation.over) : "h",
-				 x->lines ? "" : ";\n * x_3, a1_3, p1_3: c[3] of a state x, a function a1, a product p1"),
+				 x->lines ? "" : ";\n * x_3, a1_3, p1_3: c[3] of state x, function a1, product p1"),
 		       "expand_from", spell(e, "double c[%d][$c], double terms[]", own_expansion(e)->order + 1));
 	(x->lines ? emit_series_loop : emit_series_tape)(e, r);
 	close_function(e, "s u slope tau when segment interval terms");
