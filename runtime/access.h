@@ -247,6 +247,13 @@ void PL(set)(PL_TYPE *s, real t, const real x[PL_STATES])
 #if PL_INDEFINITE
     PL(begin_mass)(s);
 #endif
+#if PL_CONSERVES
+    {
+        real energy[2];
+        PL(energies)(s, x, energy);
+        s->energy = energy[0] + energy[1];
+    }
+#endif
 }
 
 #if PL_RELATIVE

@@ -214,7 +214,7 @@ static inline int PL(go_on)(PL(piece) *p, real size)
         p->y[i] = pl_accumulate(p->y[i], gain[i], 0, &p->low[i]);
     }
     p->done = size < p->limit - p->done ? p->done + size : p->limit;
-#if PL_CONSTRAINTS
+#if PL_PROJECTS
     return PL(project)(p->s, p->done * PL_H, p->y, p->low);
 #else
     return 0;

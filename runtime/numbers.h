@@ -59,6 +59,9 @@
 #ifndef PL_CONSTRAINTS
 #define PL_CONSTRAINTS 0
 #endif
+#ifndef PL_CONSERVES
+#define PL_CONSERVES 0
+#endif
 #ifndef PL_CONVERTED
 #define PL_CONVERTED 0
 #endif

@@ -247,7 +247,7 @@ static void PL(renew)(PL_TYPE *s, const real u[])
         if (PL(is_lost)(s->next)) {
             s->valid = s->most = 0;
         }
-#if PL_CONSTRAINTS
+#if PL_PROJECTS
         if (s->valid && PL(project)(s, (real)s->valid * PL_H, s->next, s->left)) {
             s->valid = s->most = 0;
         }
@@ -329,7 +329,7 @@ static inline int PL(go_over)(PL_TYPE *s, const real u[], real c[PL_ORDER + 1][P
         low[i] = s->low[i];
     }
     PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
-#if PL_CONSTRAINTS
+#if PL_PROJECTS
     s->status |= PL(project)(s, PL_OVER * PL_H, next, low);
 #endif
 #if PL_WATCHED

@@ -54,6 +54,7 @@
 #undef PL_EVENT_FREE
 #undef PL_EVENTS
 #undef PL_COLUMNS
+#undef PL_CONSERVES
 #undef PL_CONSTRAINTS
 #undef PL_CONTACTS
 #undef PL_MOVED
@@ -284,6 +285,7 @@
 #undef PL_FAST_PATH
 #undef PL_TABLES
 #undef PL_PASSES
+#undef PL_PROJECTS
 #undef PL_PAST_SAMPLES
 #undef PL_PIVOT
 #undef PL_CAUSE

@@ -102,7 +102,7 @@ void emit_access(const struct emitter *e)
 		   { "STATUS", keeps_status(e) }, { "RANGES", e->model->written->ranges }, { "PLACES", has_place(e) },
 		   { "MASSES", moving_masses(e) }, { "INDEFINITE", may_be_singular(e) },
 		   { "SAMPLED", may_be_singular(e) && !tells_tolerance(e) },
-		   { "FAILS", steps_may_fail(e) },
+		   { "FAILS", steps_may_fail(e) }, { "CONSERVES", holds_energy(e) },
 		   { "OWN", e->model->params.held || e->step->is.tuned }, { "RAMPS", e->ramps },
 		   { "PAST_SAMPLES", most_samples_before(e) });
 	say_macro(e, "ELAPSED", elapsed_text(e));

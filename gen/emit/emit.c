@@ -160,6 +160,7 @@ static void emit_all_tables(const struct emitter *e)
 {
 	emit_kept_phi(e);
 	emit_mass_matrix(e);
+	emit_energies(e);
 	emit_load_tables(e);
 	emit_refresh_tables(e);
 	if (!e->model->params.retuned)

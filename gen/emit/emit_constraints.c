@@ -143,10 +143,36 @@ void emit_mass_matrix(const struct emitter *e)
 
 void emit_mass_members(const struct emitter *e)
 {
+	if (holds_energy(e))
+		say(e, "    double energy;        /* of the state that was set, which stays */\n");
 	if (may_be_singular(e))
 		say(e, "    double pivot[%d];%*s/* of the mass matrix now: their signs say if it turns singular */\n"
 		       "    double regular[$N_STATES];  /* the last state at which it was not */\n",
 		    moving_masses(e), moving_masses(e) < 10 ? 6 : 5, "");
+}
+
+/* Where the error of a series is so small that the drift by rounding is seen */
+bool holds_energy(const struct emitter *e)
+{
+	const struct truncation *t = truncation_of(e);
+	return e->model->equations.conserved[0] && e->step->taylor.expansion && !e->step->collocation &&
+	       mpq_cmp_ui(t->tolerance, 1, 1000000000000) <= 0;
+}
+
+void emit_energies(const struct emitter *e)
+{
+	const struct form *const *energy = e->model->equations.conserved;
+	if (!holds_energy(e))
+		return;
+	struct formulas *f = formulas_new(e, (struct reading){ .written = true }, 2, (const struct form **)energy);
+	for (int k = 0; k < 2; k++)
+		tape_set(formulas_tape(f), format("conserved[%d]", k), formula(f, energy[k]), 14, k ? "V" : "T");
+	const struct reads r = reads_of_formulas(f);
+	open_function(e, "Energies at y, whose sum stays",
+		      "static void $n_energies(const $n *s, const double y[$N_STATES], double conserved[2])");
+	emit_param_locals(e, r.param);
+	emit_formulas(f, 4);
+	close_function(e, "s y");
 }
 
 void emit_constraints(const struct emitter *e)

@@ -26,7 +26,7 @@ struct identifiers {
 static const char *const own_names[] = {
 	"s", "y", "t", "u", "out", "dydt", "residual", "envelope", "factor", "left", "node", "which", "start", "slope",
 	"interval", "excess", "now", "first", "turn", "rotated", "samples", "cell", "clear", "real",
-	"tau", "when", "segment", "span", "terms", "c", "e",
+	"tau", "when", "segment", "span", "terms", "c", "e", "mass", "miss", "conserved",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 

@@ -72,6 +72,8 @@ bool rhs_needs_math(const struct emitter *e);
 void emit_constraints(const struct emitter *e);                   /* NAME_misses, NAME_masses, where there are some */
 void emit_mass_matrix(const struct emitter *e);                  /* NAME_masses, where it moves */
 void emit_mass_members(const struct emitter *e);
+void emit_energies(const struct emitter *e);
+bool holds_energy(const struct emitter *e);
 bool steps_may_fail(const struct emitter *e);                     /* and say why */
 bool may_be_singular(const struct emitter *e);
 int  moving_masses(const struct emitter *e);                      /* rows of the latter; 0: there is none */

@@ -47,6 +47,7 @@ struct segment_equations {          /* the equations and outputs in one interval
 	int masses;                 /* blocks of equations in which the mass matrix moves */
 	struct moving_mass { const struct node *node; struct linear_system system; mpq_t *start; } *mass; /* start: M */
 	struct constraint *constraint; /* one per multiplier */
+	const struct form *energy[2]; /* T and V of all statements; NULL: there is none */
 	bool negative_kinetic;      /* nothing shows that no T of energies is below 0 */
 	struct form **multiplier;   /* solved for */
 };

@@ -6,6 +6,7 @@
 #include "state_mass.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { LEVELS = 2 };                /* positions, velocities */
 
@@ -51,6 +52,72 @@ static void build_corrections(struct building *b)
 		for (int level = 0; level < LEVELS; level++)
 			correct_block(b, &rows->mass[i], level);
 	b->collector.keep = (unsigned)keep;
+}
+
+/* ---- the energy, where it is conserved: T and V alone act, T is quadratic in velocities, and constraints hold however
+ * fast the motion along them is ---- */
+
+static bool reads(const struct building *b, const struct form *form, bool velocities)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool any = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		any = any || (*term)->basis.kind == BASIS_FORCING ||
+		      (velocities && (*term)->basis.kind == BASIS_COORD && (*term)->basis.order > 0);
+	return any;
+}
+
+static bool energies_alone(const struct building *b)
+{
+	const struct spec *spec = b->spec;
+	bool alone = !b->model->relative && spec->equations == 0 && spec->count.inputs == 0 && spec->tuned.count == 0 &&
+		     b->model->contacts.impacts == 0 && b->model->system.states == 2 * b->model->n;
+	for (int i = 0; i < spec->elements; i++)
+		alone = alone && spec->element[i].kind == ELEMENT_ENERGY;
+	for (int i = 0; i < spec->lagrange.energies; i++)
+		alone = alone && strchr("TVG", spec->lagrange.energy[i].kind) && spec->lagrange.energy[i].own == 0;
+	return alone;
+}
+
+/* 0 where all velocities are */
+static bool vanishes_at_rest(struct point *rest, const struct form *form)
+{
+	return form_at(rest, form)->terms == 0;
+}
+
+static bool is_quadratic(struct building *b, struct point *rest, const struct form *T)
+{
+	const struct segment_equations *rows = rows_of(b);
+	bool quadratic = vanishes_at_rest(rest, T);
+	for (int j = 0; j < b->model->n && quadratic; j++)
+		quadratic = vanishes_at_rest(rest, form_derivatives(&b->collector, 1, &T, false, j, 1)[0]);
+	for (int i = 0; i < rows->masses; i++)
+		for (int k = 0; k < rows->mass[i].system.n * rows->mass[i].system.n && quadratic; k++)
+			quadratic = !reads(b, rows->mass[i].system.M[k], true);
+	return quadratic;
+}
+
+void find_conserved(void *building)
+{
+	struct building *b = building;
+	const struct segment_equations *rows = rows_of(b);
+	const int n = b->model->n, keep = (int)b->collector.keep;
+	const struct form *T = rows->energy[0], *V = rows->energy[1] ? rows->energy[1] : form_number(0);
+	struct fixing *fixing = ARRAY(struct fixing, n);
+	if (!energies_alone(b) || !T || reads(b, T, false) || reads(b, V, true))
+		return;
+	for (int j = 0; j < n; j++) {
+		fixing[j] = (struct fixing){ .symbol = b->model->frame.coord[j], .coord = j, .order = 1 };
+		mpq_init(fixing[j].value);
+	}
+	b->collector.keep = KEEP_ALL;
+	struct point *rest = point_new(&b->collector, n, fixing);
+	bool stays = is_quadratic(b, rest, T);
+	for (int i = 0; i < b->spec->count.multipliers && stays; i++)
+		stays = vanishes_at_rest(rest, rows->constraint[i].by[1]);
+	b->collector.keep = (unsigned)keep;
+	b->model->equations.conserved[0] = stays ? T : NULL;
+	b->model->equations.conserved[1] = stays ? V : NULL;
 }
 
 /* ---- the nearest state that meets them ----

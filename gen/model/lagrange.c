@@ -307,6 +307,10 @@ static void add_energy(struct building *b, const struct energy *energy, struct s
 		return;
 	const struct form *form = scalar_of(collect(c, energy->value), energy->value);
 	check_energy(b, energy, form);
+	if (energy->kind == 'T' || energy->kind == 'V') {
+		const struct form **total = &s->energy[energy->kind == 'V'];
+		*total = *total ? form_sum(*total, form, false) : form;
+	}
 	s->negative_kinetic = s->negative_kinetic || (energy->kind == 'T' && !is_never_negative(form));
 	if (energy->kind == 'T')
 		add_kinetic(b, form, force);

@@ -425,5 +425,7 @@ void build_system(struct building *b)
 	if (b->full && !diagnostics_errors())
 		check_mass_at_start(b);
 	if (b->full && !diagnostics_errors())
+		silent_guard(find_conserved, b);
+	if (b->full && !diagnostics_errors())
 		prefer_stiff(b);
 }

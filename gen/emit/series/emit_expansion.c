@@ -245,7 +245,8 @@ static void emit_algorithm(const struct emitter *e)
 		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
 		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
-		   { "AT", e->step->series.emitted }, { "CONSTRAINTS", e->model->equations.correction != NULL },
+		   { "AT", e->step->series.emitted }, { "CONSERVES", holds_energy(e) },
+		   { "CONSTRAINTS", e->model->equations.correction != NULL },
 		   { "MASSES", moving_masses(e) });
 	emit_moved_columns(e);
 	if (has_switching(e))

@@ -65,6 +65,8 @@ struct equations {                  /* as they are written */
 	struct equilibrium *equilibrium;
 	/* per state: what has to be taken from it for the constraints to hold, to first order; NULL: there are none */
 	const struct form **correction;
+	/* T and V beside constraints, where their sum stays; NULL: it may change */
+	const struct form *conserved[2];
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
 	/* per coordinate: its highest derivative as a row, where an output that is not linear reads it */
 	struct output **highest;
