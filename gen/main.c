@@ -583,7 +583,7 @@ static bool goes_with_delays(const struct work *w)
 {
 	const struct facts facts = facts_of_model(w->model);
 	const char *against = objection_to(CAN_AMPLITUDE, &facts, w->model).why;
-	if (!w->options.amplitude || !against)
+	if (!w->options.amplitude || !against || !w->model->delays)
 		return true;
 	say_error(w->model->delays->delay->symbol->at, NULL, "%s%s", words_before(CAN_AMPLITUDE), against);
 	return false;

@@ -36,10 +36,10 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
         if (!possible) {
             sign = heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work);
             if (sign != 0) {
-                enter(m->matrix, c, c->region + ((sign > 0) - above) * w.stride);
+                enter(m, c, c->region + ((sign > 0) - above) * w.stride);
             }
-        } else if (m->matrix[c->region] < 0 && !above && m->matrix[c->region + w.stride] >= 0) {
-            enter(m->matrix, c, c->region + w.stride);
+        } else if (matrix_in(m, c->region) < 0 && !above && matrix_in(m, c->region + w.stride) >= 0) {
+            enter(m, c, c->region + w.stride);
         }
     }
 }
@@ -50,10 +50,10 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     walk w;
     c->total = 0;
     c->crossings = c->status = c->matrix = c->rested = 0;
-    enter(m->matrix, c, 0);
+    enter(m, c, 0);
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, c->region, &w); leave(&w)) {
         for (; outside(m, c, &w, x) > 0; w.interval++) {
-            enter(m->matrix, c, c->region + w.stride);
+            enter(m, c, c->region + w.stride);
         }
     }
     below = c->region;
@@ -204,7 +204,7 @@ static void take_up(const pl_switching *m, instant *at, real time)
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
         for (; (way = outside(m, at->c, &w, at->x)) != 0; w.interval += way) {
             (void)list(m->max_events, at->c, at->crossing, time, w.i, w.interval - (way < 0), way > 0);
-            enter(m->matrix, at->c, at->c->region + way * w.stride);
+            enter(m, at->c, at->c->region + way * w.stride);
         }
     }
 }
@@ -245,7 +245,7 @@ static int pass(const pl_switching *m, instant *at, const event *e, real time)
     VARIED(at->time = time;)
     VARIED(meet_breakpoint(m, at, e->expression, e->breakpoint);)
     const int listed = list(m->max_events, at->c, at->crossing, time, e->expression, e->breakpoint, e->upward);
-    enter(m->matrix, at->c, at->c->region + (e->upward ? e->stride : -e->stride));
+    enter(m, at->c, at->c->region + (e->upward ? e->stride : -e->stride));
     return listed ? GO_ON : SEARCH_NO_MORE;
 }
 
@@ -261,6 +261,7 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
     at.work = work;
     SET_VARIATION(at);
     c->crossings = 0;
+    enter_again(m, c);
     (void)go(m, &at, tau, 1);
 }
 

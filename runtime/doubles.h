@@ -2,6 +2,8 @@
 /* doubles.h: the runtime's names for double again, behind floats.h. */
 #undef pl_accumulate
 #undef pl_block
+#undef pl_cached
+#undef pl_cached_matrix
 #undef pl_chain
 #undef pl_crossing
 #undef pl_event_split
@@ -85,6 +87,7 @@
 #undef pl_rate
 #undef pl_rate_of
 #undef pl_region_bounds
+#undef pl_region_halvings
 #undef pl_region_large
 #undef pl_region_of
 #undef pl_region_reach

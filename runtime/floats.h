@@ -2,6 +2,8 @@
 /* floats.h: the runtime's names for float in the place of those for double, until doubles.h. */
 #define pl_accumulate pl_accumulatef
 #define pl_block pl_blockf
+#define pl_cached pl_cachedf
+#define pl_cached_matrix pl_cachedf_matrix
 #define pl_chain pl_chainf
 #define pl_crossing pl_crossingf
 #define pl_event_split pl_event_splitf
@@ -85,6 +87,7 @@
 #define pl_rate pl_ratef
 #define pl_rate_of pl_ratef_of
 #define pl_region_bounds pl_regionf_bounds
+#define pl_region_halvings pl_regionf_halvings
 #define pl_region_large pl_regionf_large
 #define pl_region_of pl_regionf_of
 #define pl_region_reach pl_regionf_reach

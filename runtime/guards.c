@@ -19,7 +19,7 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
             continue;
         }
         if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0) {
-            enter(m->matrix, c, c->region + w.stride);
+            enter(m, c, c->region + w.stride);
         }
     }
 }
@@ -50,7 +50,7 @@ static void hold_first(const pl_guards *m, instant *at)
             if (magnitude(excess(m, at->c, w.i, w.at[w.interval], at->x, &noise)) > noise) {
                 continue;
             }
-            enter(m->matrix, at->c, at->c->region + w.stride);
+            enter(m, at->c, at->c->region + w.stride);
             if (impact >= 0 && magnitude(speed_of(m, at, impact)) > 0) {
                 go_to(m, at, w.i, free_of(m, impact));
             }
@@ -62,13 +62,13 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
 {
     instant at;
     int first = 0, i;
-    while (m->matrix[first] < 0) {
+    while (matrix_in(m, first) < 0) {
         first++;
     }
     c->total = 0;
     c->crossings = c->status = c->rested = 0;
-    c->matrix = m->matrix[first];
-    enter(m->matrix, c, 0);
+    c->matrix = matrix_in(m, first);
+    enter(m, c, 0);
     for (i = 0; i < WORDS * m->size; i++) {
         work[i] = x[i];
     }
@@ -236,7 +236,7 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
         say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
     }
     if (g->impact < 0 || m->impact[g->impact].rest < 0) {
-        enter(m->matrix, at->c, at->c->region + g->leads);
+        enter(m, at->c, at->c->region + g->leads);
     }
     keep(m, at);
     if (g->impact >= 0) {
@@ -340,6 +340,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
     const int holds = m->hold[c->region] >= 0;
     SET_VARIATION(at);
     c->crossings = 0;
+    enter_again(m, c);
     if (holds && !is_taken_up(m, c, x, work)) {
         take_up(m, &at, 0);
     }

@@ -167,11 +167,11 @@ static int projects(const pl_guards *m, instant *at)
     const int stride = stride_of(m, v->function), up = at->c->region + stride, down = at->c->region - stride;
     const int held = is_hold(m, v->function, interval_in(m, at->c->region, v->function));
     int i, p;
-    if (!held || (v->before != up && v->before != down) || m->matrix[up] < 0 || m->matrix[down] < 0) {
+    if (!held || (v->before != up && v->before != down) || matrix_in(m, up) < 0 || matrix_in(m, down) < 0) {
         return 0;
     }
-    pl_multiply(n, n, matrix_of(m->A, m, m->matrix[up]), at->x, q);
-    pl_multiply(n, n, matrix_of(m->A, m, m->matrix[down]), at->x, v->work);
+    pl_multiply(n, n, matrix_of(m->A, m, matrix_in(m, up)), at->x, q);
+    pl_multiply(n, n, matrix_of(m->A, m, matrix_in(m, down)), at->x, v->work);
     for (i = 0; i < n; i++) {
         q[i] -= v->work[i];
     }
@@ -206,7 +206,7 @@ static PL_APART int interval_in(const pl_guards *m, int region, int expression)
 
 static int is_possible(const pl_guards *m, int region)
 {
-    return m->matrix[region] >= 0;
+    return matrix_in(m, region) >= 0;
 }
 
 static int region_now(const instant *at)
@@ -244,7 +244,7 @@ static int interval_before(const pl_guards *m, const instant *at, int expression
 static void go_to(const pl_guards *m, instant *at, int expression, int interval)
 {
     const int by = interval - interval_of(m, at, expression);
-    enter(m->matrix, at->c, at->c->region + by * stride_of(m, expression));
+    enter(m, at->c, at->c->region + by * stride_of(m, expression));
 }
 
 static void renew(const pl_guards *m, instant *at)
@@ -304,7 +304,7 @@ static void follow(const pl_guards *m, instant *at, int jumped)
         for (; (way = outside(m, at->c, &w, at->x)) != 0 && (jumped || !is_stopped(m, at, w.i, way));
              w.interval += way) {
             (void)has_listed(m, at, 1, at->time, w.i, w.interval - (way < 0), way > 0);
-            enter(m->matrix, at->c, at->c->region + way * w.stride);
+            enter(m, at->c, at->c->region + way * w.stride);
         }
     }
 }
@@ -472,7 +472,7 @@ static real pull_of(const pl_guards *m, int k, const real *x)
 static int rises(const pl_guards *m, int region, int k, const real *x, real *work)
 {
     const int n = m->size;
-    return heading(n, matrix_of(m->A, m, m->matrix[region]), m->guard_row + (ptrdiff_t)m->guard[k].row * n, x,
+    return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guard_row + (ptrdiff_t)m->guard[k].row * n, x,
                    work) > 0;
 }
 
@@ -494,7 +494,7 @@ static int is_let_go(const pl_guards *m, int region, int expression, int side, c
 {
     const int stuck = region - side * stride_of(m, expression);
     int k;
-    if (m->matrix[stuck] < 0) {
+    if (matrix_in(m, stuck) < 0) {
         return 0;
     }
     for (k = m->first[stuck]; k < m->first[stuck + 1]; k++) {
@@ -515,7 +515,8 @@ static int is_freed(const pl_guards *m, const instant *at, int region, const res
 static int heading_in(const pl_guards *m, instant *at, int region, const resting *one, int *known)
 {
     (void)known;
-    return heading(m->size, matrix_of(m->A, m, m->matrix[region]), m->row + one->expression * m->size, at->x, at->work);
+    return heading(m->size, matrix_of(m->A, m, matrix_in(m, region)), m->row + one->expression * m->size, at->x,
+                   at->work);
 }
 
 static int is_pressed(const pl_guards *m, const instant *at, int impact)

@@ -77,6 +77,9 @@
 #ifndef PL_BY_PHI
 #define PL_BY_PHI 0
 #endif
+#ifndef PL_SLOTS
+#define PL_SLOTS 0
+#endif
 #ifndef PL_SWITCHING_FUNCTIONS
 #define PL_SWITCHING_FUNCTIONS 0
 #endif

@@ -138,6 +138,43 @@ typedef struct pl_ladder {
     const int *guard_rows; /* of each guard function the number of its first row of reach; read by pl_guards alone */
 } pl_ladder;
 
+/* Numbers that follow from params: these come first, then constants, then results of the operations. */
+typedef struct pl_formulas {
+    unsigned short params, constants;
+    int operations;
+    const pl_two *constant;
+    const pl_operation *operation;
+} pl_formulas;
+
+/* A matrix of such numbers. */
+typedef struct pl_entries {
+    unsigned short rows, columns;
+    int places;
+    const pl_place *place; /* of the entries that are not 0 */
+} pl_entries;
+
+/* Regions whose matrices are made when they are met, and kept in slots: the number of a region's A is that of its slot.
+ * A is that of the region with the lowest interval of each switching function, and what the interval of each adds. */
+typedef struct pl_cached {
+    int (*matrix)(struct pl_cached *m, int region); /* pl_cached_matrix */
+    int size, switches, slots;
+    int rungs, most;    /* of a ladder; as for pl_region_of */
+    int regions, first; /* in a segment of time; added to a region's number, which is region + regions segment */
+    PL_REAL h;          /* step [s] */
+    const int *breaks;  /* of each switching function */
+    const PL_REAL *row; /* switches x size; in each segment */
+    /* In each segment: A of the first region, then what interval 1, 2, ... of each switching function adds; the number
+     * of an entry is that of its constant, in double-double [1/s]. */
+    const pl_entries *sum;
+    const pl_two *constant;
+    pl_slot *slot;
+    uint32_t *clock;
+    /* Of each slot, as pl_switching has them of each matrix; rungs and rows of reach of one after the other */
+    int *halvings, *spacing;
+    PL_REAL *A, *Phi, *pieces, *tangent, *chord_error, *cubic_error, *reach;
+    pl_two *work;       /* PL_CACHED_WORK(size, switches) entries */
+} pl_cached;
+
 typedef struct pl_switching {
     int size;           /* entries of x */
     PL_REAL h;          /* step [s] */
@@ -159,6 +196,7 @@ typedef struct pl_switching {
     /* degree of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, lower where |pole| d is small */
     int degree;
     int max_events, max_splits; /* bounds per step: crossings; halvings of an interval in the search */
+    pl_cached *cached; /* NULL: all matrices are there; else `matrix` is not read */
 } pl_switching;
 
 typedef struct pl_crossing {
@@ -402,6 +440,7 @@ typedef struct pl_guards {
     /* impacts x size, for bounces: the approach speed is speed . x; x - (e - b) back is on the breakpoint b. */
     const PL_REAL *speed, *back;
     int degree, max_events, max_splits; /* as for pl_switching */
+    pl_cached *cached;
 } pl_guards;
 
 /* Sets *c to the region of x, as pl_switching_start; on a double breakpoint x is held if its conditions allow it. */
@@ -446,21 +485,6 @@ void pl_guards_compensated_change(const pl_guards *m, PL_REAL time, PL_REAL *x, 
 #include "saltation.h"
 
 /* ---- retune.c: coefficients from other params --------------------------------------------------------------- */
-
-/* Numbers that follow from params: these come first, then constants, then results of the operations. */
-typedef struct pl_formulas {
-    unsigned short params, constants;
-    int operations;
-    const pl_two *constant;
-    const pl_operation *operation;
-} pl_formulas;
-
-/* A matrix of such numbers. */
-typedef struct pl_entries {
-    unsigned short rows, columns;
-    int places;
-    const pl_place *place; /* of the entries that are not 0 */
-} pl_entries;
 
 /* Sets `made` to the results of all operations at these params, in double-double.  Returns 0; PL_SINGULAR if a divisor
  * is 0, perhaps within rounding; PL_NOT_FINITE if a param is infinite or not a number.
@@ -539,6 +563,14 @@ PL_REAL pl_region_large(int size, int halvings, const PL_REAL *Phi, PL_REAL most
  * cubic_error of pl_switching, with an allowance for their rounding.  work: PL_BOUNDS_WORK(size) entries */
 void pl_region_bounds(int size, PL_REAL d, const PL_REAL *A, int rows, const PL_REAL *row, PL_REAL *slope,
                       PL_REAL *second, PL_REAL *fourth, PL_REAL *work);
+
+/* Sets halvings and spacing as pl_region_of does.  v, next: work, `size` entries */
+int pl_region_halvings(int size, const pl_two *A, PL_REAL h, int most, int rungs, int *halvings, int *spacing,
+                       PL_REAL *v, PL_REAL *next);
+
+/* Returns the slot in which the matrix of a region is.  If it is in none, it is made by these functions in the place of
+ * the one used longest ago; the numbers do not depend on what was met before.  What is not finite there makes x so. */
+int pl_cached_matrix(pl_cached *m, int region);
 
 /* Computes reach of a ladder for the same functions: for each, that of all rungs but the first, and of h.
  * work: PL_REACH_WORK(size, rows) entries */

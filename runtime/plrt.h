@@ -396,6 +396,7 @@ enum { PL_PEAK_SPACE = 6 };
 #define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))
 #define PL_INCREMENT_WORK(size) (6 * (size) * (size))
 #define PL_REGION_WORK(size) (7 * (size) * (size))
+#define PL_CACHED_WORK(size, switches) (8 * (size) * (size) + 2 * ((switches) + 1) * (size))
 #define PL_BOUNDS_WORK(size) ((4 * (size) + 5) * (size))
 #define PL_REACH_WORK(size, rows) ((5 * (size) + 3 * (rows) + 1) * (size))
 #define PL_EVENT_SPLIT_ROOM(size) (8 * (size) * (size))
@@ -450,6 +451,12 @@ typedef struct pl_operation {
 typedef struct pl_place {
     unsigned short row, column, number, negative;
 } pl_place;
+
+/* Of matrices of regions that are made when they are met, where one is kept */
+typedef struct pl_slot {
+    int region;         /* -1: none */
+    uint32_t used;      /* when, by the clock */
+} pl_slot;
 
 /* The version of the two descriptors pl_model and pl_modelf.  A program that loads models compiled elsewhere checks the
  * first two entries before it reads any other; these two never move. */

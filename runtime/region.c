@@ -66,9 +66,10 @@ static void rung_of_increment(int n, const pl_two *D, real *rows)
 }
 
 /* So many halvings of h that no pole turns by more than 1, and between the rungs of a ladder that has room for some */
-static int halve(int n, const pl_two *A, real h, int most, int rungs, int *halvings, int *spacing, real *v, real *next)
+int pl_region_halvings(int size, const pl_two *A, real h, int most, int rungs, int *halvings, int *spacing, real *v,
+                       real *next)
 {
-    real turn = largest_turn(n, A, h, v, next);
+    real turn = largest_turn(size, A, h, v, next);
     if (!is_finite(turn)) {
         return PL_NOT_FINITE;
     }
@@ -84,7 +85,7 @@ int pl_region_of(int size, const pl_two *A, real h, int most, int rungs, int *ha
 {
     const int cells = size * size;
     pl_two *const D = work + PL_INCREMENT_WORK(size);
-    int i, down, status = halve(size, A, h, most, rungs, halvings, spacing, slopes, Phi);
+    int i, down, status = pl_region_halvings(size, A, h, most, rungs, halvings, spacing, slopes, Phi);
     if (status == 0) {
         status = pl_increment(size, size, A, h, 1, D, work);
     }
@@ -356,4 +357,78 @@ void pl_region_reach(int size, real h, int halvings, int spacing, const real *A,
             d *= 2;
         }
     }
+}
+
+/* ---- regions that are made when they are met ---- */
+
+static void add_entries(const pl_cached *m, const pl_entries *e, pl_two *A)
+{
+    int i;
+    for (i = 0; i < e->places; i++) {
+        const pl_place *const p = e->place + i;
+        pl_two *const to = A + p->row * m->size + p->column, more = m->constant[p->number];
+        *to = p->negative ? add(*to, two(-more.hi, -more.lo)) : add(*to, more);
+    }
+}
+
+/* A of a region: in the order of switching functions, so that it is the same whichever was before */
+static void sum_region(const pl_cached *m, int region, pl_two *A)
+{
+    const int cells = m->size * m->size;
+    const pl_entries *sum = m->sum;
+    int segment = region / m->regions, rest = region % m->regions, intervals = 1, i;
+    for (i = 0; i < cells; i++) {
+        A[i] = two(0, 0);
+    }
+    for (i = 0; i < m->switches; i++) {
+        intervals += m->breaks[i];
+    }
+    sum += (ptrdiff_t)segment * intervals;
+    add_entries(m, sum++, A);
+    for (i = 0; i < m->switches; sum += m->breaks[i++]) {
+        const int interval = rest % (m->breaks[i] + 1);
+        rest /= m->breaks[i] + 1;
+        if (interval > 0) {
+            add_entries(m, sum + interval - 1, A);
+        }
+    }
+}
+
+static void make_region(const pl_cached *m, int region, int slot)
+{
+    const int n = m->size;
+    const ptrdiff_t cells = (ptrdiff_t)slot * n * n, rows = (ptrdiff_t)slot * m->switches * n;
+    real *const A = m->A + cells, *const work = (real *)(void *)m->work;
+    const real *const row = m->row + (ptrdiff_t)(region / m->regions) * m->switches * n;
+    real none = 0;
+    int i, status;
+    sum_region(m, region, m->work);
+    status = pl_region_of(n, m->work, m->h, m->most, m->rungs, &m->halvings[slot], &m->spacing[slot], A, m->Phi + cells,
+                          m->pieces + (ptrdiff_t)slot * m->rungs * (n + 1) * n, m->work + n * n);
+    if (status != 0) {
+        m->halvings[slot] = 0;
+        for (i = 0; i < n * n; i++) {
+            A[i] = m->Phi[cells + i] = none / none;
+        }
+    }
+    pl_region_bounds(n, m->h / (real)((uint32_t)1 << m->halvings[slot]), A, m->switches, row, m->tangent + rows,
+                     m->chord_error + rows, m->cubic_error + rows, work);
+    pl_region_reach(n, m->h, m->halvings[slot], m->spacing[slot], A, m->switches, row,
+                    m->reach + rows * m->rungs, work);
+}
+
+int pl_cached_matrix(pl_cached *m, int region)
+{
+    int i, oldest = 0;
+    region += m->first;
+    for (i = 0; i < m->slots && m->slot[i].region != region; i++) {
+        oldest = m->slot[i].used < m->slot[oldest].used ? i : oldest;
+    }
+    if (i == m->slots) {
+        i = oldest;
+        make_region(m, region, i);
+        m->slot[i].region = region;
+    }
+    m->slot[i].used = ++*m->clock;
+    return i;
 }

@@ -273,12 +273,27 @@ static void leave(walk *w)
     w->i++;
 }
 
-/* matrix: of each region; -1: it cannot be, and the one before stays in use */
-static void enter(const int *matrix, pl_contact *c, int region)
+/* The number of a region's matrix; -1: it cannot be */
+static int matrix_in(const searched *m, int region)
 {
+    return m->cached != NULL ? m->cached->matrix(m->cached, region) : m->matrix[region];
+}
+
+/* Where it cannot be, the matrix before stays in use. */
+static void enter(const searched *m, pl_contact *c, int region)
+{
+    const int matrix = matrix_in(m, region);
     c->region = region;
-    if (matrix[region] >= 0) {
-        c->matrix = matrix[region];
+    if (matrix >= 0) {
+        c->matrix = matrix;
+    }
+}
+
+/* What was met since may have its slot. */
+static void enter_again(const searched *m, pl_contact *c)
+{
+    if (m->cached != NULL) {
+        enter(m, c, c->region);
     }
 }
 

@@ -18,6 +18,8 @@
  *     PL_GUARDS                  whether it is that of guards.c
  *     PL_LADDER                  shorter pieces, as braces around what pl_ladder has
  *     PL_OWN, PL_SEGMENTS        whether an instance has the tables; of time, each with its own regions
+ *     PL_SLOTS                   matrices of regions that an instance keeps, made when they are met; 0: all are there.
+ *                                Beside them PL_RUNGS, PL_HALVINGS, and in the place of tables PL(sum), PL(constant)
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
@@ -36,6 +38,17 @@
 #define PL_OF(name) PL(name)
 #endif
 
+/* An instance is const where it is asked about a time in a step; what it keeps is no part of what it tells. */
+#if PL_SLOTS > 0
+#define PL_KEPT(name) own->cached.name
+#define PL_MATRIX (const int *)0
+#define PL_CACHE(search, first) pl_cached cached = PL(cached)(s, first); (search).cached = &cached;
+#else
+#define PL_KEPT(name) PL_OF(name)
+#define PL_MATRIX PL(matrix)
+#define PL_CACHE(search, first)
+#endif
+
 #if PL_SWITCHING_FUNCTIONS == 0 /* what is theirs is not read */
 #define PL_SWITCHING_TABLES PL(slopes)[0][0], PL(matrix), PL(slopes)[0][0]
 #elif PL_SEGMENTS > 1
@@ -50,7 +63,7 @@
 #define PL_FIRST(count) 0
 #endif
 
-#define PL_MATRICES PL(matrix), PL_OF(halvings), PL_OF(slopes)[0][0], PL_OF(pieces)[0][0], PL_LADDER
+#define PL_MATRICES PL_MATRIX, PL_KEPT(halvings), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_LADDER
 
 #if PL_GUARDS
 #define PL_GUARD_ERRORS PL_OF(guard_chord_error)[0], PL_OF(guard_cubic_error)[0]
@@ -61,18 +74,41 @@
 #define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(retreat)[PL_FIRST(PL_IMPACTS)]
 #define PL_BOUNDS PL_ENDED, PL_SET, PL_IMPACTS, PL_OF(impact) + PL_FIRST(PL_IMPACTS), PL_SPEEDS
 #elif PL_SWITCHING_FUNCTIONS > 0
-#define PL_BOUNDS PL_OF(tangent)[0][0], PL_OF(chord_error)[0][0], PL_OF(cubic_error)[0][0]
+#define PL_BOUNDS PL_KEPT(tangent)[0][0], PL_KEPT(chord_error)[0][0], PL_KEPT(cubic_error)[0][0]
 #else
 #define PL_BOUNDS PL(slopes)[0][0], PL(slopes)[0][0], PL(slopes)[0][0]
 #endif
 
-#define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS
+#define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS, (pl_cached *)0
 #define PL_TABLES PL_SIZE, PL_H, PL_SWITCHING_FUNCTIONS, PL_SWITCHING_TABLES, PL_MATRICES, PL_BOUNDS, PL_MOST
 
-#if PL_OWN || PL_SEGMENTS > 1
+#if PL_SLOTS > 0
+#if PL_SEGMENTS > 1
+#define PL_ROWS_OF_ALL PL(row)[0][0]
+#else
+#define PL_ROWS_OF_ALL PL(row)[0]
+#endif
+
+static pl_cached PL(cached)(const PL_TYPE *s, int first)
+{
+    struct PL_TYPE *const own = (struct PL_TYPE *)s;
+    const pl_cached c = {
+        pl_cached_matrix, PL_SIZE, PL_SWITCHING_FUNCTIONS, PL_SLOTS, PL_RUNGS, PL_HALVINGS, PL_REGIONS, first, PL_H,
+        PL(breaks), PL_ROWS_OF_ALL, PL(sum), PL(constant), PL_KEPT(slot), &PL_KEPT(clock), PL_KEPT(halvings),
+        PL_KEPT(spacing), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_KEPT(rungs)[0][0], PL_KEPT(tangent)[0][0],
+        PL_KEPT(chord_error)[0][0], PL_KEPT(cubic_error)[0][0], PL_KEPT(bend)[0], PL_KEPT(work)
+    };
+    return c;
+}
+#endif
+
+#if PL_OWN || PL_SEGMENTS > 1 || PL_SLOTS > 0
 /* Made anew for each call: an instance that is copied would have to point into itself. */
 static PL_SEARCH PL(switching)(const PL_TYPE *s, int segment)
 {
+#if PL_SLOTS > 0
+    struct PL_TYPE *const own = (struct PL_TYPE *)s;
+#endif
     const PL_SEARCH tables = {PL_TABLES};
     (void)s;
     (void)segment;
@@ -101,15 +137,19 @@ static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VEC
 {
 #if PL_SEGMENTS > 1
     PL_SEARCH here = PL(switching)(s, segment);
+#if PL_SLOTS == 0
     here.matrix += segment * PL_REGIONS;
+#endif
 #if PL_GUARDS
     here.first += segment * PL_REGIONS;
     here.hold += segment * PL_REGIONS;
 #endif
+    PL_CACHE(here, segment * PL_REGIONS)
     PL_START(&here, x, contact, work);
     contact->region += segment * PL_REGIONS;
-#elif PL_OWN
-    const PL_SEARCH here = PL(switching)(s, segment);
+#elif PL_OWN || PL_SLOTS > 0
+    PL_SEARCH here = PL(switching)(s, segment);
+    PL_CACHE(here, 0)
     PL_START(&here, x, contact, work);
 #else
     (void)s;
@@ -125,6 +165,11 @@ static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VEC
 static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
 {
     contact->region += PL_REGIONS;
+#if PL_SLOTS > 0 /* the search makes it */
+    (void)s;
+    (void)x;
+    (void)work;
+#else
 #if PL_LOST
     if (PL(matrix)[contact->region] < 0) {
         pl_contact now;
@@ -138,6 +183,7 @@ static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_conta
     (void)work;
 #endif
     contact->matrix = PL(matrix)[contact->region];
+#endif
 }
 
 /* Counts what is found from `done` on, as of the start. */
@@ -176,6 +222,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         const real change = segment < PL_SEGMENTS - 1 ? PL_UNTIL(s, segment) : never;
         const real to = change < tau ? change : tau;
         PL_SEARCH here = PL(switching)(s, segment);
+        PL_CACHE(here, 0)
         here.max_events -= count;
 #if PL_COLUMNS_D > 0
         if (v != NULL) {
@@ -214,8 +261,9 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
                             pl_crossing *crossing PL_AND_VARIATION)
 {
     real work[PL_WORK];
-#if PL_OWN
-    const PL_SEARCH here = PL(switching)(s, 0);
+#if PL_OWN || PL_SLOTS > 0
+    PL_SEARCH here = PL(switching)(s, 0);
+    PL_CACHE(here, 0)
     PL_ADVANCE(&here, tau, x, contact, crossing, work PL_V);
 #else
     (void)s;

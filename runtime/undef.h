@@ -28,6 +28,11 @@
 #undef PL_OPERATIONS
 #undef PL_OPERATORS
 #undef PL_BARE
+#undef PL_CACHE
+#undef PL_KEPT
+#undef PL_MATRIX
+#undef PL_ROWS_OF_ALL
+#undef PL_SLOTS
 #undef PL_BASE
 #undef PL_BEATS
 #undef PL_BELOW

@@ -12,7 +12,7 @@ static const char *const stems[] = {
 	"pl_phase", "pl_rate", "pl_lead", "pl_cossin", "pl_envelope", "pl_series_switching", "pl_series", "pl_two",
 	"pl_power", "pl_until", "pl_accumulate", "pl_multiply", "pl_not_finite", "pl_magnitude", "pl_root",
 	"pl_factor", "pl_solve", "pl_formulas", "pl_increment", "pl_ramp", "pl_entries", "pl_block",
-	"pl_group", "pl_region", "pl_event_split", "pl_impact", "pl_guards", "pl_switching", "pl_crossing",
+	"pl_group", "pl_cached", "pl_region", "pl_event_split", "pl_impact", "pl_guards", "pl_switching", "pl_crossing",
 	"pl_event_impact", "pl_instant", "pl_chain", "pl_events", "pl_peak", "pl_lanes", "pl_larger_size", "pl_model",
 	"pl_many", "pl_derivatives", "pl_variation", "pl_varied", "pl_moved", "pl_doubt"
 };

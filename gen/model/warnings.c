@@ -363,6 +363,8 @@ static void check_truncation(const struct building *b)
 		say_warning(b->spec->request.absolute_of[0].at, NULL, "the tolerance has no effect: %s", why);
 	if (b->spec->request.substeps && !model->truncation.adaptive)
 		say_warning(b->spec->request.substeps->start, NULL, "the bound on substeps has no effect: %s", why);
+	if (b->spec->request.cached && !model->switching)
+		say_warning(b->spec->request.cached->start, NULL, "regions cached has no effect: the model has none");
 }
 
 static void check_need(const struct building *b, bool left)

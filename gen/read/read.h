@@ -292,6 +292,7 @@ struct requested_scheme {
 	/* of a scheme in powers of h: its order, as an expression; the steps that one expansion is over; the error that
 	 * a step may make; the most steps within one h. NULL: not given */
 	struct node *order, *over, *tolerance, *substeps;
+	struct node *cached;        /* matrices of regions that an instance keeps; NULL: not given */
 	struct node *absolute;      /* behind the tolerance: what a step may add to any state; NULL: not given */
 	int absolutes;
 	struct state_bound *absolute_of;  /* the same of some states */

@@ -90,6 +90,17 @@ void read_substeps(struct parser *p)
 	expect_end(p);
 }
 
+/* regions: regions cached expression */
+void read_cached(struct parser *p)
+{
+	struct place at = last_token(p, strlen("regions"));
+	if (p->own->request.cached)
+		error(at, NULL, "how many regions are cached is given already");
+	expect_word(p, "cached");
+	p->own->request.cached = read_expression(p);
+	expect_end(p);
+}
+
 /* expression { , expression } [ , ] [ without static ] */
 struct mode_list take_modes(struct parser *p)
 {

@@ -2,6 +2,8 @@
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
 #include "model/contacts/friction.h"
 #include "report/report.h"
+#include "plrt.h"
+#include "model/regions/regions.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/linear/forms.h"
@@ -84,6 +86,8 @@ static long bytes_of_regions(const struct step *step)
 	const struct switching *s = step->model->switching;
 	long size = step->layout.size, matrices = s->systems;
 	long rows = s->segments * s->functions * size;
+	if (s->cached)                          /* in an instance */
+		return 16 * PL_CACHED_WORK(size, s->functions) + slots_of(step) * bytes_of_slot(step);
 	long bytes = 8 * (rows + matrices * (2 * words_of(step) * size * size + 3 * s->functions * size)) +
 		     4 * (s->regions + s->functions + matrices);
 	if (step->regions.event_check.is_made && step->model->params.retuned)
@@ -91,6 +95,17 @@ static long bytes_of_regions(const struct step *step)
 			      edges_of_regions(s));
 	return bytes + ladder_bytes(step) + (step->regions.event_check.fast_path ? fast_path_bytes(step) : 0) +
 	       (has_events(s) ? guard_bytes(step) : 0);
+}
+
+/* To make the tables of a region: an increment in two words for h and each rung, of so many products at most of 17
+ * multiplications an entry; series of bounds; strides that double */
+static long most_of_slot(const struct step *step)
+{
+	enum { PRODUCTS = 80, EACH = 17, SERIES = 14, DOUBLED = 8 };
+	const long size = step->layout.size, functions = step->model->switching->functions;
+	const long rungs = room_for_rungs(step), doubled = DOUBLED * (step->branch->halvings + 1);
+	return size * size * (size * ((1 + rungs) * PRODUCTS * EACH + 4 * (SERIES + size) + 3 * doubled) +
+			      4 * doubled * functions + 64 * functions);
 }
 
 /* Every piece of it by a Taylor polynomial, after one of each other length was tried, all events and splits used */
@@ -106,7 +121,8 @@ static long most_of_regions(const struct step *step)
 			 (degree + 1) * s->functions * (size + 6) + two_words) +
 	       4 * (degree + 1) *
 		       (2 * max_splits(step->model) + 4 * s->functions * pieces + 64 * max_events(step->model)) +
-	       fast_path_multiplications(step);
+	       fast_path_multiplications(step) +
+	       (step->model->switching->cached ? (max_events(step->model) + 1) * most_of_slot(step) : 0);
 }
 
 /* ---- for a person ---- */
@@ -205,10 +221,15 @@ static void text_of_one_part(FILE *to, const struct step *step)
 {
 	const struct model *model = step->shown->model;
 	const struct switching *s = model->switching;
-	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions%s with %d "
-		    "different linear systems; each constant of these is its closed form, correctly rounded; crossings "
-		    "inside a step are found in order, to rounding.\n", possible_regions(s),
-		s->segments > 1 ? format(" in %d segments of time", s->segments) : "", s->systems);
+	const char *in_time = s->segments > 1 ? format(" in %d segments of time", s->segments) : "";
+	const char *linear = format(" with %d different linear systems; each constant of these is its closed form, "
+				    "correctly rounded", s->systems);
+	if (s->cached)
+		linear = format("; the target makes their matrices when it meets them, each entry within 16 units in "
+				"the last place of the largest, and keeps those of the last %d", slots_of(step));
+	fprintf(to, "Scheme exact: nothing is approximated. The equations are piecewise linear: %d regions%s%s; "
+		    "crossings inside a step are found in order, to rounding.\n",
+		s->cached ? region_numbers(s) : possible_regions(s), in_time, linear);
 	text_switching_functions(to, step);
 	text_frictions(to, s);
 	text_impacts(to, model);
@@ -277,7 +298,7 @@ static void text_list_of_part(FILE *to, const struct switching *all, int index)
 
 static void text_list(FILE *to, const struct switching *s)
 {
-	for (int r = 0; r < s->regions; r++)
+	for (int r = 0; r < s->regions && !s->cached; r++)
 		if (s->region[r].possible) {
 			fprintf(to, "    region %d", r % regions_at_once(s));
 			text_intervals(to, s, r);
@@ -297,8 +318,9 @@ void text_region_list(FILE *to, const struct step *step)
 		most += most_of_regions(step->regions.part[p]);
 	}
 	fprintf(to,
-		"Tables: %ld bytes. Per step%s at most %d crossings and %d splits; at most %ld multiplications%s.\n",
-		bytes, parts ? " of each part" : "", parts ? MAX_EVENTS : max_events(step->model),
+		"Tables%s: %ld bytes. Per step%s at most %d crossings and %d splits; at most %ld multiplications%s.\n",
+		caches_regions(step->model) ? ", most of them in an instance" : "", bytes,
+		parts ? " of each part" : "", parts ? MAX_EVENTS : max_events(step->model),
 		parts ? MAX_SPLITS : max_splits(step->model), most, parts ? " of all" : "");
 }
 
@@ -378,7 +400,7 @@ static void json_region_list(FILE *to, const struct switching *s, const struct r
 	const char *next = part ? "" : "\n    ", *between = part ? ", " : ",\n    ";
 	fputs("\"regions\": [", to);
 	for (int r = 0; r < s->regions && (s->functions > 0 || !part); r++) {
-		if (!s->region[r].possible)
+		if (!s->region[r].possible || s->cached)
 			continue;
 		fprintf(to, "%s{\"number\": %d%s, \"matrix\": %d}", next,
 			part ? share_of_region(part, all, r) : r % regions_at_once(s), json_segment(s, r),
@@ -405,6 +427,8 @@ void json_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->shown->model->switching;
 	json_switching_functions(to, step);
+	if (s->cached)
+		fprintf(to, "  \"regions_cached\": %d,\n", slots_of(step));
 	if (s->frictions > 0)
 		json_frictions(to, s);
 	if (s->sliders > 0)

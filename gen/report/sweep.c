@@ -279,7 +279,7 @@ static bool has_friction(const struct model *model)
 bool can_be_swept(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	return model->switching && model->contacts.impacts == 0 && !has_friction(model) &&
+	return model->switching && !caches_regions(model) && model->contacts.impacts == 0 && !has_friction(model) &&
 	       !loads_change(&model->system) && model->system.states <= LIMIT_SWEPT;
 }
 
@@ -296,6 +296,7 @@ static void need_sweeps(const struct step *step)
 		      "--amplitude is of clearances, without impacts and dry friction");
 	if (loads_change(&model->system))
 		error(model->request.at.step, NULL, "--amplitude is of equations that are the same at all times");
+	refuse(CAN_AMPLITUDE, model, model->request.at.step);
 	if (model->system.states > LIMIT_SWEPT)
 		error(model->request.at.step, NULL, "the model has %d states: sweeps are limited to %d",
 		      model->system.states, LIMIT_SWEPT);

@@ -256,7 +256,8 @@ static void check_actions(struct check *c)
 static void check_regions(struct check *c, const struct step *step)
 {
 	c->where = "regions";
-	need(c, step->branches == step->model->switching->systems, "one without its tables");
+	need(c, step->branches == (step->model->switching->cached ? 1 : step->model->switching->systems),
+	     "one without its tables");
 	need(c, step->regions.parts == step->model->switching->parts, "an independent part without its step");
 	need(c, step->series.emitted && step->series.degree > 0, "they have no series to find crossings by");
 	for (int k = 0; k < step->branches; k++) {

@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 54, MOST_REFUSALS = 700, LINE = 1000, ROW = 10, PAGE = 118 };
+enum { MOST = 55, MOST_REFUSALS = 700, LINE = 1000, ROW = 10, PAGE = 118 };
 
 /* ---- gen/model/capability.def ---- */
 
@@ -144,6 +144,7 @@ static struct facts facts_of(const bool *row)
 	/* a scheme leaves over what is piecewise linear; from event to event loads are not left over */
 	f.left = f.left || (f.regions && f.approximates) || (f.recipe && !f.contacts);
 	f.regions = f.regions && !f.left;
+	f.cached = f.cached && f.regions;
 	f.linear = !f.regions && !f.left;
 	f.recipe = f.left && !f.normal && (f.approximates || (f.recipe && !f.contacts));
 	f.curved = f.left;
@@ -372,7 +373,7 @@ static void print_words(char *text, int column)
 /* Columns and rows are known by letters and digits, so that a row fits on a line. */
 static char letter(int i)
 {
-	return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz12"[i];
+	return "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz123456789"[i];
 }
 
 static void print_pairs_table(void)
@@ -575,6 +576,7 @@ static void write_spec(FILE *to)
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
 	if (vector)
 		fprintf(to, "coord q[%d]\n", n);
+	fputs(has("cached") ? "regions cached 3\n" : "", to);
 	fputs(has("delayed") ? "input d\n" : "", to);
 	fputs(has("held") ? "input u\n" : "", to);
 	fputs(has("ramp") ? "input v hold first\n" : "", to);

@@ -6,6 +6,8 @@
 #include "model/reads.h"
 #include "step/regions/guards.h"
 
+#include <string.h>
+
 static const struct switching *regions_of(const struct emitter *e)
 {
 	return e->model->switching;
@@ -172,6 +174,12 @@ void emit_regions(const struct emitter *e)
 	if (!e->model->params.retuned)
 		emit_rows(e, &pieces);
 	emit_breaks(e, &pieces, false);
+	if (regions_of(e)->cached) {
+		emit_cached(e);
+		emit_search(e, cached_ladder);
+		say_include(e, "search.h");
+		return;
+	}
 	emit_region_numbers(e);
 	emit_ladder_places(e, g);
 	if (g && e->model->params.retuned)
@@ -201,6 +209,7 @@ void emit_region_members(const struct emitter *e)
 {
 	say(e, "    pl_contact contact;   /* region, crossings */\n"
 	       "    pl_crossing crossing[$N_MAX_EVENTS];  /* of the last step */\n");
+	emit_cached_member(e);
 }
 
 static bool *needed_loads(const struct emitter *e)
@@ -297,7 +306,7 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "IMPACTS", s->impacts },
 		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : switches ? MAX_SPLITS : 0 },
 		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
-		{ "REGIONS", regions_at_once(s) }, { "LOST", any_lost(e) },
+		{ "REGIONS", region_numbers(s) }, { "LOST", any_lost(e) },
 		{ "ALONE", !e->step->shown->regions.parts && switches },
 		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.is_made },
 		{ "CAPPED", capped_entries(e) }
@@ -325,6 +334,8 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "START", format("%s_start%s", search, varied));
 	say_macro(e, "ADVANCE", format("%s_advance%s", search, varied));
 	emit_variation_macros(e);
+	if (regions_of(e)->cached)
+		emit_cached_macros(e);
 	if (!regions_change(e))
 		return;
 	say_macro(e, "CHANGE", format("%s_change%s", search, varied));
@@ -370,6 +381,7 @@ void emit_region_start(const struct emitter *e)
 	declare_region_room(e);
 	emit_rotated_loads(e, needed_loads(e), false);
 	emit_region_vector(e, false);
+	emit_cached_start(e);
 	emit_region_start_call(e);
 	close_function(e, "");
 	if (regions_of(e)->transmitted_forces > 0)
@@ -451,7 +463,9 @@ void emit_lanes_of_regions(const struct emitter *e)
 /* Of the file, or of an instance */
 static const char *table(const struct emitter *e, const char *name)
 {
-	return e->model->params.retuned ? format("s->coeffs.%s", name) : format("%s_%s", e->spelled.own, name);
+	return e->model->params.retuned ? format("s->coeffs.%s", name)
+	       : regions_of(e)->cached && !strstr("row breakpoint", name) ? format("s->cached.%s", name)
+		       : format("%s_%s", e->spelled.own, name);
 }
 
 /* What ends a region */
@@ -506,11 +520,15 @@ void emit_event_note(const struct emitter *e)
 	     table(e, "row"), table(e, "breakpoint"), event_text(e));
 	note_clear_steps(e, function, table(e, format("%schord_error", of)));
 	note_search(e, function, of);
-	note(e, "At an event %s, and the step goes on in the region behind ($o_matrix).",
+	if (regions_of(e)->cached)
+		note(e, "Matrices are made when their regions are met: A as a sum ($o_sum), e^{A h} and bounds of it, "
+			"which s->cached keeps of the last %d.", slots_of(e->step));
+	note(e, "At an event %s, and the step goes on in the region behind%s.",
 	     !guards ? "the state is taken there" : e->model->switching->impacts > 0
 			? "impacts turn the approach speed s to -restitution s, the combination of sticking and "
 			  "slipping that contradicts no force is taken"
-			: "the combination of sticking and slipping that contradicts no force is taken");
+			: "the combination of sticking and slipping that contradicts no force is taken",
+	     regions_of(e)->cached ? "" : spell(e, " ($o_matrix)"));
 	note(e, "A breakpoint passed by less than rounding errors is no event. $n_crossings lists those of a step; "
 		"more than $N_MAX_EVENTS set PL_TOO_MANY_EVENTS.");
 	say(e, " */\n");

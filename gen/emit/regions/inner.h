@@ -104,6 +104,14 @@ bool is_compensated(const struct emitter *e);                     /* the state h
 int size_of_vector(const struct emitter *e);                      /* of x, with them */
 /* A list behind itself: first and second words */
 const char **listed_twice(int count, const char *const *text);
+/* emit_cached.c: of regions whose matrices the target makes: what these are sums of, where they are kept, none of them
+ * yet, what search.h asks for */
+#define cached_ladder \
+	"{PL(first_rung), PL_KEPT(spacing), PL_KEPT(rungs)[0][0], PL_KEPT(bend)[0], PL(first_rung)}"
+void emit_cached(const struct emitter *e);
+void emit_cached_member(const struct emitter *e);
+void emit_cached_start(const struct emitter *e);
+void emit_cached_macros(const struct emitter *e);
 void emit_state_of_x(const struct emitter *e);                    /* the state from x; `i` is declared */
 /* emit_cross.c: of a step with the fast path; emit_event_check.c: of one that is checked for events over h first */
 void emit_crossing(const struct emitter *e, const struct pieces *p); /* what few.h calls, and asks for */

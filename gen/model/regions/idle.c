@@ -52,14 +52,6 @@ static bool has_impact(const struct switching *s, int function, int at)
 	return acted;
 }
 
-int breaks_of_all(const struct switching *s)
-{
-	int count = 0;
-	for (int e = 0; e < s->functions; e++)
-		count += s->function[e].breaks;
-	return count;
-}
-
 static void drop_from_slides(struct switching *s, int function)
 {
 	for (int r = 0; r < s->regions; r++)
@@ -88,7 +80,7 @@ static void drop_function(struct switching *s, int function)
 
 void remove_idle_breaks(struct switching *s)
 {
-	for (int e = s->functions - 1; e >= 0; e--) {
+	for (int e = s->functions - 1; e >= 0 && !s->cached; e--) {
 		for (int at = s->function[e].breaks - 1; at >= 0; at--)
 			if (breaks_of_all(s) > 1 && !is_stick(&s->function[e], at) &&
 			    !is_stick(&s->function[e], at + 1) && !has_impact(s, e, at) && changes_nothing(s, e, at))

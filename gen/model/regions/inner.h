@@ -13,6 +13,7 @@
 int  find_switching_function(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_switching_functions(struct switching *s);
+int  region_above(const struct switching *s, int region, int function); /* one interval up; -1: it is not listed */
 bool share_function(const struct switching *a, const struct switching *b);
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
@@ -25,7 +26,11 @@ int  add_system(struct switching *s, const struct linear *system, int segment, b
 int  count_candidates(struct switching *s);                 /* in one segment of time; strides of switching functions */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
-_Noreturn void too_many(const struct building *b, const struct switching *s);
+_Noreturn void too_many(const struct switching *s);
+_Noreturn void too_many_in_time(const struct switching *s);
+/* A region's matrix is no sum over switching functions, at this node */
+_Noreturn void refuse_cache(const struct building *b, const struct switching *s, const struct node *node,
+			    const char *why);
 
 /* ---- sides.c: surfaces where a form is 0 that something decides on, and the equations on either side ---- */
 

@@ -178,8 +178,11 @@ static void search(void *context)
 	struct building *b = context;
 	int n = b->model->n, *all = ARRAY(int, n);
 	bool together = b->factor || b->model->relative || b->request->again.undivided || b->request->solution ||
-			holds_friction(b) || b->model->contacts.impacts > 0;
+			holds_friction(b) || b->model->contacts.impacts > 0 || b->spec->request.cached;
 	struct switching *s = together ? NULL : regions_of_parts(b);
+	for (int p = 0; s && p < s->parts; p++)         /* a number of a region is then no sum of those in a table */
+		if (s->part[p].model->switching->cached)
+			s = NULL;
 	for (int i = 0; i < n; i++)
 		all[i] = i;
 	b->model->switching = s ? s : regions_of_rows(b, n, all);

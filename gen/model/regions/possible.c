@@ -18,16 +18,23 @@ _Noreturn void too_many_in_time(const struct switching *s)
 	      "more regions than the limit of %d, in %d segments of time together", LIMIT_REGIONS_IN_TIME, s->segments);
 }
 
-_Noreturn void too_many(const struct building *b, const struct switching *s)
+_Noreturn void too_many(const struct switching *s)
 {
-	bool together = b->model->relative || b->request->again.undivided;
 	const char *hint = "a scheme with a remainder, such as etdrk4, needs no regions";
 	if (has_events(s))
 		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together";
-	else if (together)
-		hint = "there are rigid-body modes, and then independent parts have their regions together; a "
-		       "scheme with a remainder, such as etdrk4, needs no regions";
 	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
+}
+
+_Noreturn void refuse_cache(const struct building *b, const struct switching *s, const struct node *node,
+			    const char *why)
+{
+	if (!b->spec->request.cached)
+		error(last_term(s)->at, format("the target could make them, but at '%s' %s",
+					       text_between(node->start, node->end), why),
+		      "more regions than the limit of %d", LIMIT_REGIONS);
+	error(node->at, "without 'regions cached' all of them are in tables",
+	      "a region's matrix is no sum over switching functions: %s", why);
 }
 
 struct inequality { mpq_t *a; };    /* a[0] v0 + a[1] v1 + ... < a[count] */
@@ -152,16 +159,17 @@ void mark_possible(const struct building *b, struct switching *s)
 	for (int segment = 0; segment < s->segments; segment++) {
 		struct basis *basis;
 		int bases = find_bases(s, segment, &basis), count = 0;
-		bool all = b->factor || independent(s, segment); /* by other values others are */
+		/* by other values others are */
+		bool all = b->factor || s->cached || independent(s, segment);
 		for (int r = segment * in_one; r < (segment + 1) * in_one; r++) {
 			s->region[r].possible = all || is_possible(s, r, bases, basis);
 			count += s->region[r].possible;
 		}
 		in_all += count;
-		if (count > LIMIT_REGIONS)
-			too_many(b, s);
-		if (s->segments > 1 && s->functions > 0 && in_all > LIMIT_REGIONS_IN_TIME)
-			too_many_in_time(s);
+		s->many = s->many || (count > LIMIT_REGIONS && !s->cached);
+		s->many_in_time = s->many_in_time || (!s->many && s->segments > 1 && !s->cached && s->functions > 0 &&
+						      in_all > LIMIT_REGIONS_IN_TIME);
+		s->many = s->many || s->many_in_time;
 	}
 }
 
@@ -186,10 +194,10 @@ static bool vanishes_on(struct collector *c, const struct form *form, const stru
 	return gone;
 }
 
-static void check_face(struct building *b, const struct switching *s, int below, int function)
+static void check_face(struct building *b, const struct switching *s, int below, int above, int function)
 {
 	const struct switching_function *e = &s->function[function];
-	const struct region *low = &s->region[below], *high = &s->region[below + e->stride];
+	const struct region *low = &s->region[below], *high = &s->region[above];
 	mpq_srcptr at = e->at[interval_of(s, below, function)];
 	for (int k = 0; k < s->rows; k++) {
 		int i = s->row[k];
@@ -203,8 +211,9 @@ static void check_face(struct building *b, const struct switching *s, int below,
 void check_jumps(struct building *b, const struct switching *s)
 {
 	for (int e = 0; e < s->functions; e++)
-		for (int r = 0; r < s->regions && reads_velocity(b->model, s->function[e].form); r++)
-			if (interval_of(s, r, e) < s->function[e].breaks && s->region[r].possible &&
-			    s->region[r + s->function[e].stride].possible)
-				check_face(b, s, r, e);
+		for (int r = 0; r < s->regions && reads_velocity(b->model, s->function[e].form); r++) {
+			const int above = region_above(s, r, e);
+			if (above >= 0 && s->region[r].possible && s->region[above].possible)
+				check_face(b, s, r, above, e);
+		}
 }

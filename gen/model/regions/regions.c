@@ -6,9 +6,15 @@
  * time are. */
 #include "inner.h"
 #include "model/building.h"
+#include "model/checks.h"
 #include "model/contacts/friction.h"
 
-enum { LIMIT_CANDIDATES = 6561 };   /* regions looked at, before those that cannot be are left out */
+#include <limits.h>
+
+enum {
+	LIMIT_CANDIDATES = 6561,    /* regions looked at, before those that cannot be are left out */
+	MOST_SLOTS = 65536
+};
 
 /* ---- is it? ---- */
 
@@ -40,7 +46,18 @@ struct looking {
 	int region, row;            /* where it looks */
 	int segment;                /* of time */
 	int lowest; /* of the regions, where there is one switching function, that a new breakpoint divides */
+	/* Which switching function decides on the atom at hand, and per known atom; -1: none */
+	int by, *decided;
+	int inside;                 /* so many atoms it is in */
+	const struct node *mixed;   /* what two of them decide on together; NULL: nothing */
 };
+
+static void note_decision(struct looking *l, const struct node *node, int function)
+{
+	if (function >= 0 && l->by >= 0 && l->by != function && !l->mixed)
+		l->mixed = node;
+	l->by = function >= 0 ? function : l->by;
+}
 
 int possible_regions(const struct switching *s)
 {
@@ -128,6 +145,7 @@ static int function_here(struct looking *l, const struct node *node, const struc
 	}
 	int e = find_switching_function(l->s, l->segment, &what, factor, at);
 	note_sign(l->b, l->s, factor, false);
+	note_decision(l, node, e);
 	return e;
 }
 
@@ -369,6 +387,23 @@ static struct form *atom_here(struct looking *l, const struct atom *a)
 	return call_here(l, a, x);
 }
 
+static const struct form *known_here(struct looking *l, const struct atom *atom)
+{
+	const int at = atom->index, outer = l->by;
+	if (!l->known[at]) {
+		work_at(atom->node->start);
+		l->by = -1;
+		l->inside++;
+		l->known[at] = atom_here(l, atom);
+		l->inside--;
+		l->decided[at] = l->by;
+		l->by = outer;
+	}
+	if (l->inside > 0)
+		note_decision(l, atom->node, l->decided[at]);
+	return l->known[at];
+}
+
 /* Not to be changed: it may share the terms of the form, or be what an atom is */
 static struct form *form_here(struct looking *l, const struct form *form)
 {
@@ -378,12 +413,8 @@ static struct form *form_here(struct looking *l, const struct form *form)
 	for (int i = 0; i < form->terms; i++) {
 		const struct form_term *term = &form->term[i];
 		const struct atom *atom = term->basis.atom;
-		if (atom && !l->known[atom->index]) {
-			work_at(atom->node->start);
-			l->known[atom->index] = atom_here(l, atom);
-		}
 		if (atom)
-			form_add_to(total, l->known[atom->index], term->factor);
+			form_add_to(total, known_here(l, atom), term->factor);
 		else
 			form_add_basis(total, term->basis, term->factor);
 	}
@@ -402,11 +433,12 @@ static int *intervals_of(const struct switching *s, int region)
 
 int count_candidates(struct switching *s)
 {
+	const int limit = s->cached ? INT_MAX / s->segments : LIMIT_CANDIDATES;
 	int count = 1;
 	for (int i = 0; i < s->functions; i++) {
 		s->function[i].stride = count;
-		if (count > LIMIT_CANDIDATES / (s->function[i].breaks + 1))
-			return LIMIT_CANDIDATES + 1;
+		if (count > limit / (s->function[i].breaks + 1))
+			return 0;
 		count *= s->function[i].breaks + 1;
 	}
 	return count;
@@ -458,11 +490,12 @@ static bool look(struct building *b, struct switching *s, int *known)
 	struct region *before = s->region;
 	for (int r = *known; r < s->regions; r++)
 		forget_region(&before[r]);
-	bool single = s->functions == 1 && s->segments == 1;
+	bool single = s->functions == 1 && s->segments == 1 && !s->cached;
 	int in_one = count_candidates(s);
-	if (in_one > LIMIT_CANDIDATES)
-		too_many(b, s);
-	s->regions = in_one * s->segments;
+	s->many = in_one == 0;
+	if (s->many)
+		return true;
+	s->regions = (s->cached ? 1 + breaks_of_all(s) : in_one) * s->segments;
 	s->region = ARRAY(struct region, s->regions);
 	for (int r = 0; r < *known; r++)
 		s->region[r] = before[r];
@@ -472,6 +505,8 @@ static bool look(struct building *b, struct switching *s, int *known)
 				     .s = s,
 				     .interval = interval,
 				     .known = ARRAY(struct form *, atoms),
+				     .decided = ARRAY(int, atoms),
+				     .by = -1,
 				     .count = atoms,
 				     .region = r,
 				     .segment = segment_of_region(s, r),
@@ -488,6 +523,7 @@ static bool look(struct building *b, struct switching *s, int *known)
 		}
 		meet_impacts(&l);
 		discard(l.known);
+		discard(l.decided);
 		discard(interval);
 		*known = single && s->functions == 1 ? l.lowest : 0;
 		if (s->torn)
@@ -495,6 +531,8 @@ static bool look(struct building *b, struct switching *s, int *known)
 		s->torn = false;
 		if (l.grown)
 			return false;
+		if (s->cached && l.mixed)
+			refuse_cache(b, s, l.mixed, "two switching functions decide on it together");
 	}
 	return true;
 }
@@ -511,11 +549,20 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 	return changes || impacts_change(b);
 }
 
-/* Highest derivatives cannot decide on their own equations; the collector has refused them. */
-struct switching *regions_of_rows(struct building *b, int rows, int *row)
+/* Whether regions that are too many for tables may be made on the target; what stands against it else is said */
+static bool may_cache(const struct building *b, const struct switching *s)
+{
+	return !b->factor && s->impacts + s->frictions + s->sliders == 0;
+}
+
+/* All of them, or those that the target sums up the others from */
+static struct switching *regions_found(struct building *b, int rows, int *row, bool cached)
 {
 	struct switching *s = NEW(struct switching);
+	const struct node *slots = b->spec->request.cached;
 	int known = 0;
+	s->cached = cached;
+	s->slots = slots ? whole_number(b, b->spec->request.cached, 2, MOST_SLOTS, "regions that are cached") : 0;
 	s->impacts = b->model->contacts.impacts;
 	s->impact = b->model->contacts.impact;
 	s->rows = rows;
@@ -523,8 +570,29 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
-	complete_switching_functions(s);
-	mark_possible(b, s);
+	if (cached && (s->many || !may_cache(b, s)))
+		refuse_cache(b, s, s->many ? s->function[s->functions - 1].node : b->spec->request.cached,
+			     s->many ? "regions have no number below 2^31"
+			     : b->factor ? "tunable params change matrices"
+					 : "what sticks, slips or bounces has another inertia there");
+	if (!s->many) {
+		complete_switching_functions(s);
+		mark_possible(b, s);
+	}
+	return s;
+}
+
+/* Highest derivatives cannot decide on their own equations; the collector has refused them. */
+struct switching *regions_of_rows(struct building *b, int rows, int *row)
+{
+	const bool walked = b->request->solution;       /* through all of them */
+	struct switching *s = regions_found(b, rows, row, b->spec->request.cached && !walked);
+	if (s->many_in_time && !may_cache(b, s))
+		too_many_in_time(s);
+	if (s->many && !may_cache(b, s))
+		too_many(s);
+	if (s->many)
+		s = regions_found(b, rows, row, true);
 	if (!b->model->relative)                /* else its error was reported */
 		check_jumps(b, s);
 	if (has_events(s))

@@ -33,6 +33,12 @@ struct switching {
 	/* all, possible or not: products of the switching functions' intervals, of each segment of time in order */
 	int regions;
 	struct region *region;      /* NULL where there are parts */
+	/* The target makes the matrices of regions that it meets, A of the first one and what an interval of each
+	 * switching function adds to it: `region` has the first of each segment of time, in which all intervals are
+	 * the lowest, and those beside it in which one is not. slots: so many are kept; 0: as many as are small */
+	bool cached;
+	int slots;
+	bool many, many_in_time;    /* too many for tables of all of them; in all segments together */
 	int systems;
 	/* where there are parts one: that of the first region of each; one segment of time */
 	struct linear *system;
@@ -73,8 +79,9 @@ bool is_piecewise_linear(const struct building *b);
 int  interval_of(const struct switching *s, int region, int function);
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
+bool caches_regions(const struct model *model);                     /* the target makes their matrices */
+int  region_numbers(const struct switching *s);                     /* numbers that regions may have in one of them */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */
-_Noreturn void too_many_in_time(const struct switching *s);
 int  breaks_of_all(const struct switching *s);               /* breakpoints of all its switching functions */
 int  possible_regions(const struct switching *s);
 

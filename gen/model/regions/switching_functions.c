@@ -9,10 +9,52 @@
 
 /* ---- intervals and rates ---- */
 
+/* Where all of them are cached, of those beside the lowest the first that this switching function is in */
+static int first_beside(const struct switching *s, int function)
+{
+	int first = 1;
+	for (int i = 0; i < function; i++)
+		first += s->function[i].breaks;
+	return first;
+}
+
 int interval_of(const struct switching *s, int region, int function)
 {
 	const struct switching_function *e = &s->function[function];
-	return region / e->stride % (e->breaks + 1);
+	if (!s->cached)
+		return region / e->stride % (e->breaks + 1);
+	int interval = region % regions_at_once(s) - first_beside(s, function) + 1;
+	return interval > 0 && interval <= e->breaks ? interval : 0;
+}
+
+int breaks_of_all(const struct switching *s)
+{
+	int count = 0;
+	for (int e = 0; e < s->functions; e++)
+		count += s->function[e].breaks;
+	return count;
+}
+
+bool caches_regions(const struct model *model)
+{
+	return model->switching && model->switching->cached;
+}
+
+int region_numbers(const struct switching *s)
+{
+	int count = 1;
+	for (int i = 0; i < s->functions && s->cached; i++)
+		count *= s->function[i].breaks + 1;
+	return s->cached ? count : regions_at_once(s);
+}
+
+int region_above(const struct switching *s, int region, int function)
+{
+	const struct switching_function *e = &s->function[function];
+	const int interval = interval_of(s, region, function);
+	if (interval == e->breaks || (s->cached && interval == 0 && region % regions_at_once(s) > 0))
+		return -1;
+	return region + (!s->cached ? e->stride : interval > 0 ? 1 : first_beside(s, function));
 }
 
 bool is_stick(const struct switching_function *e, int interval)

@@ -70,7 +70,8 @@ void take_operators(struct step *step)
 	bool holds = scheme_row(model->scheme)->holds_coupling;
 	/* in normal modes, what else reads a branch is content with the first operator's */
 	int operators = step->is.flow == FLOW_NORMAL && step->is.events == EVENTS_NONE ? 1 : model->schedule.operators;
-	step->branches = regions ? regions->systems : operators ? operators : 1;
+	/* where the target makes the matrices of regions it has that of the first from nowhere else */
+	step->branches = !regions ? (operators ? operators : 1) : regions->cached ? 1 : regions->systems;
 	step->branch = ARRAY(struct branch, step->branches);
 	for (int k = 0; k < step->branches; k++) {
 		struct linear system = regions		  ? driven_system(&regions->system[k])

@@ -60,7 +60,7 @@ static bool decays(const struct resolvent *resolvent)
 static bool decays_in_all(const struct switching *s)
 {
 	enum { MOST_SYSTEMS = 16 };
-	bool all = s->systems <= MOST_SYSTEMS && s->frictions + s->impacts == 0;
+	bool all = !s->cached && s->systems <= MOST_SYSTEMS && s->frictions + s->impacts == 0;
 	for (int k = 0; k < s->systems && all; k++)
 		all = decays(resolvent_of(&s->system[k]));
 	return all;

@@ -209,7 +209,8 @@ static bool *readings(const struct step *step)
 	const struct model *model = step->model;
 	int n = step->branch->system.states;
 	bool *reads = ARRAY(bool, (size_t)(n * n));
-	const struct switching *there = model->params.retuned ? model->params.retuned->other->switching : NULL;
+	const struct switching *there = model->params.retuned ? model->params.retuned->other->switching
+					: model->switching && model->switching->cached ? model->switching : NULL;
 	for (int k = 0; k < (there ? there->systems : step->branches); k++) {
 		const mpq_t *A = state_matrix(there		     ? &there->system[k]
 					      : model->params.tuning ? &model->params.tuning->other->system

@@ -97,7 +97,7 @@ void plan_ladder(struct step *step, int branch)
 	b->spacing = b->halvings > room ? (b->halvings + room - 1) / room : 1;
 	if (!step->model->params.retuned && b->halvings > 1)
 		b->spacing = 2;
-	b->rungs = b->halvings > 0 ? (b->halvings - 1) / b->spacing + 1 : 0;
+	b->rungs = step->model->switching->cached ? 0 : b->halvings > 0 ? (b->halvings - 1) / b->spacing + 1 : 0;
 }
 
 /* ---- their pieces ---- */

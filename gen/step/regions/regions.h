@@ -55,6 +55,9 @@ struct pieces pieces_of(const struct step *step);
 #define LARGE_ENOUGH (0x1p500)      /* no sum of products of such a number overflows; of floats: */
 #define LARGE_FLOAT (0x1p60)
 double *full_step_of(const struct step *step, int branch);   /* e^{A h}, size x size */
+/* Of regions whose matrices the target makes: how many an instance keeps, and what each takes */
+int slots_of(const struct step *step);
+long bytes_of_slot(const struct step *step);
 bool has_ladder(const struct step *step);
 int room_for_rungs(const struct step *step);
 double *Phi_over(const struct step *step, const struct table *table, int halvings);

@@ -5,7 +5,10 @@
 #include "model/contacts/contacts.h"
 #include "step/cost.h"
 #include "step/linear/forms.h"
+#include "plrt.h"
 #include "step/exponential/recipe.h"
+
+#include <math.h>
 
 /* Phi over a part of the step, and what inputs add: u held, and u' as the slope of u */
 static struct wanted *wanted_piece(const struct step *step, int halvings)
@@ -31,7 +34,8 @@ static const char *no_check(const struct step *step)
 	for (int k = 0; k < step->branches; k++)
 		turns = turns || step->branch[k].halvings > !events;
 	int matrices = 3 * step->branches * step->layout.size * step->layout.size;
-	return step->model->request.single                 ? "it is smaller, for the target float"
+	return s->cached ? "matrices are made when their regions are met"
+	       : step->model->request.single                 ? "it is smaller, for the target float"
 	       : s->segments > 1                         ? "loads change their formula in time"
 	       : events && step->model->params.retuned          ? "what sticks, slips and bounces has tunable params"
 	       : events && step->is.two_words ? "what sticks, slips and bounces is kept in two words"
@@ -119,9 +123,62 @@ static void plan_check(struct step *step)
 	step->regions.event_check.degree = any ? series_degree(step, 0, step->branches, 0) : step->series.degree;
 }
 
+/* ---- regions whose matrices the target makes ---- */
+
+/* Above the size of every entry of A of any region */
+static void add_sizes(const struct step *step, pl_two *most)
+{
+	const struct switching *s = step->model->switching;
+	const int cells = step->layout.size * step->layout.size, in_one = regions_at_once(s);
+	RATIONAL size = ZERO;
+	for (int r = 0; r < s->regions; r++) {
+		const int first = r / in_one * in_one;
+		SCRATCH double *sum = ARRAY(double, cells);
+		const mpq_t *A = augmented_matrix(&step->layout, &s->system[s->region[r].system], 0);
+		const mpq_t *A0 = augmented_matrix(&step->layout, &s->system[s->region[first].system], 0);
+		for (int i = 0; i < cells; i++) {
+			mpq_abs(size, A[i]);
+			if (r > first)
+				mpq_sub(size, A[i], A0[i]);
+			most[i].hi += fabs(round_rational(size)) * (1 + 1e-9);
+		}
+	}
+}
+
+/* So many that no region's fastest pole turns far in the shortest piece, whichever region it is */
+static int halvings_of_all(const struct step *step)
+{
+	const int size = step->layout.size;
+	SCRATCH pl_two *most = ARRAY(pl_two, (size_t)(size * size));
+	SCRATCH double *work = ARRAY(double, 2 * (size_t)size);
+	int halvings, spacing;
+	add_sizes(step, most);
+	if (pl_region_halvings(size, most, round_rational(step->model->h), LIMIT_PIECES, 1, &halvings, &spacing, work,
+			       work + size) == PL_NOT_FINITE)
+		report_range(step);
+	return halvings;
+}
+
+int slots_of(const struct step *step)
+{
+	enum { BYTES = 1 << 20, LEAST = 8, MOST = 64 };
+	const struct switching *s = step->model->switching;
+	const long bytes = bytes_of_slot(step);
+	const long fit = BYTES / bytes;
+	return s->slots ? s->slots : fit < LEAST ? LEAST : fit > MOST ? MOST : (int)fit;
+}
+
+long bytes_of_slot(const struct step *step)
+{
+	const long size = step->layout.size, functions = step->model->switching->functions,
+		   rungs = room_for_rungs(step), real = step->model->request.single ? 4 : 8;
+	return 16 + real * size * (2 * size + rungs * (size + 1 + functions) + 3 * functions);
+}
+
 static void halve_region(struct step *step, int k)
 {
-	step->branch[k].halvings = series_halvings(step, k);
+	const bool cached = step->model->switching->cached;
+	step->branch[k].halvings = cached ? halvings_of_all(step) : series_halvings(step, k);
 	if (step->branch[k].halvings > LIMIT_PIECES)
 		error(step->model->request.at.step, "a smaller step would do",
 		      "the largest pole times h is above 2^%d: too short pieces of a step to look for crossings in",
@@ -171,7 +228,7 @@ static void build_switched(struct step *step)
 		halve_region(step, k);
 	for (int k = 0; k < step->branches; k++)
 		plan_region(step, k);
-	if (step->model->params.retuned)
+	if (step->model->params.retuned || step->model->switching->cached)
 		plan_retuned(step);
 	step->program->additions = step->program->multiplications = products_of_piece(step);
 	plan_check(step);
