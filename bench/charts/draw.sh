@@ -53,7 +53,9 @@ derive stability_boundary.csv stability_boundary.csv fold -v by=method,branch -v
 for name in energy integrators operator_boundary papers_beam_tip quality; do
 	derive $name.csv $name.csv digits -v to=3
 done
-derive needs.csv needs.csv digits -v to=4
+for name in convergence frame_history gear1_sweep integrators_check needs; do
+	derive $name.csv $name.csv digits -v to=4
+done
 for name in hard_methods headline_integrators headline_equal_step; do
 	derive $name.csv "precision_methods.csv $name.csv" unlike
 done
