@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # No line of what people read and write is longer than 120 columns, in characters, a tab as up to 8. As TAP, a case a
-# folder; and all that is kept is below 12 MB, so that no table of megabytes comes back.
+# folder; all that is kept is below 12 MB, so that no table of megabytes comes back; and pages stay short.
 #
 #     lines.sh SOURCE_ROOT
 #
@@ -54,6 +54,9 @@ if [ -s files ]; then
 	(cd "$root" && xargs -0 cat) <files | wc -c >bytes
 	[ "$(cat bytes)" -lt 12000000 ]
 	result $? "$name: $(cat bytes)"
+	words=$(cd "$root" && git ls-files '*.md' '*.1' | xargs cat | tr -s ' \t\n' '\n' | grep -c '[A-Za-z0-9]')
+	[ "$words" -gt 1000 ] && [ "$words" -le 41000 ] 2>log
+	result $? "pages and man pages have at most 41000 words: $words"
 else
 	skip "$name" 'not a working copy of git'
 fi
