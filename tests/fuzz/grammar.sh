@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with MERGE=1
-# or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of the seeds FIRST
-# to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of seeds.  PLGEN is built with
+# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with CASE,
+# MERGE=1 or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of the seeds
+# FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of seeds. PLGEN is built with
 # sanitizers; it makes every third of them, and the plain one, beside it without `_sanitized`, the others. What is
 # emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1 all have
-# sanitizers, by gcc and clang in turn; and drive.c holds it against other roads.  A spec may be refused only with a
+# sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only with a
 # message of refusals.list.
 set -u
 absolute() {
@@ -76,7 +76,7 @@ cp -R "$source/tests/fuzz/corpus/parts" .
 if [ -n "$corpus" ]; then
 	batch_new
 	awk -f "$source/tests/cases.awk" "$corpus" >names
-	merging || { awk 'NR % 2' names >half && mv half names; }
+	merging || [ -n "${CASE:-}" ] || { awk 'NR % 2' names >half && mv half names; }
 	names=$(cat names)
 	for name in $names; do
 		add "c_$name" "$name.spec"
