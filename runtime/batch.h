@@ -10,6 +10,7 @@
  *     PL_SHARED                      numbers of a step that instances share: `now`
  *     PL_FACTORS, PL_LANES           that params decide: of an instance; of these those that lanes read
  *     PL_RAMPS, PL_SHARES            whether there are PL(hold), PL(batch_share)
+ *     PL_TUNED                       whether what params decide is of one step: member h
  *
  *     PL(factor_at)[PL_FACTORS]               where in PL_TYPE each is
  *     PL(share_step)(s, u, now)               what a step reads of what instances share, which takes the step
@@ -20,6 +21,7 @@
  *
  *     PL_EVENTS                      1: PL(lanes_step) leaves lanes that may have an event in the step as they are, and
  *                                    says which it has stepped; behind the states y has the region
+ *     PL_OVER                        above 0: steps of a series of fixed order, series_lanes.h
  *     PL_LANES_PAY, PL_OUT_ALONE     of these, how many lanes pay; 1: outputs are those of NAME_out
  *
  * and where there are outputs that are the largest of something (peaks.h)
@@ -40,7 +42,13 @@
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
 #define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
+#if PL_OVER > 0
+#define PL_AHEAD 16 /* the struct of each step ahead is kept */
+#define PL_HEAD sizeof(PL_TYPE)
+#else
 #define PL_AHEAD 64
+#define PL_HEAD offsetof(PL_TYPE, crossing)
+#endif
 #if PL_FLUSHES > 0
 #define PL_READY(k) (PL_AHEAD - (size_t)((k) & (PL_AHEAD - 1))) /* up to where a step flushes */
 #else
@@ -48,7 +56,7 @@
 #endif
 
 /* What instances share in some steps ahead: [0] before the first, [k] in step k and behind it */
-typedef struct PL(ahead) {
+typedef struct PL(steps_ahead) {
     size_t steps;
     int flushes; /* the last step does */
     real now[PL_AHEAD + 1][PL_HAS(PL_SHARED)];
@@ -59,10 +67,10 @@ typedef struct PL(ahead) {
     PL_TYPE from;
 #endif
 #if PL_EVENTS
-    unsigned char head[PL_AHEAD + 1][offsetof(PL_TYPE, crossing)]; /* of an instance, what all share */
+    unsigned char head[PL_AHEAD + 1][PL_HEAD]; /* of an instance, what all share */
 #endif
     const real *u;
-} PL(ahead);
+} PL(steps_ahead);
 
 #include "lanes_alone.h"
 
@@ -168,7 +176,7 @@ static void PL(share_reach)(const PL_TYPE *s, const real *u, size_t n, real reac
 #endif
 
 /* What acts on the states in the steps ahead, where samples alone did not say */
-static void PL(ahead_acting)(PL(ahead) *ahead)
+static void PL(ahead_acting)(PL(steps_ahead) *ahead)
 {
     real now[PL_HAS(PL_SHARED)];
     size_t k;
@@ -277,7 +285,7 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 /* ---- groups of lanes over the steps ahead ---- */
 
 /* Behind step k of these, as flush.h: all but nothing is 0, in every lane */
-PL_LANES_INLINE void PL(lanes_flush)(const PL(ahead) *ahead, size_t k, pl_lanes *y)
+PL_LANES_INLINE void PL(lanes_flush)(const PL(steps_ahead) *ahead, size_t k, pl_lanes *y)
 {
 #if PL_FLUSHES > 0
 #if PL_SINGLE
@@ -306,7 +314,7 @@ PL_LANES_INLINE void PL(lanes_flush)(const PL(ahead) *ahead, size_t k, pl_lanes 
 }
 
 /* Instances from `first` on, `groups` a lane, step by step with outputs of each */
-PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out, const int groups)
+PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out, const int groups)
 {
     pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
 #if PL_PEAKS > 0
@@ -328,7 +336,7 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
             memcpy(start[g], y[g], sizeof start[g]);
 #endif
 #if PL_EVENTS
-            PL(lanes_step_all)(b, first + (size_t)g * PL_AT_ONCE, ahead, k, y[g], factor[g]);
+            PL(lanes_step_all)(b, first + (size_t)g * PL_AT_ONCE, ahead, k, y[g], factor[g], b->peak || out);
 #else
             PL(lanes_step)(y[g], factor[g], ahead->now[k]);
 #endif
@@ -361,7 +369,7 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(ahead) *ahea
 }
 
 #if PL_PEAKS > 0
-static void PL(batch_one_by_one)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+static void PL(batch_one_by_one)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
 {
     PL(ahead_acting)(ahead);
     PL(lanes_go)(b, first, ahead, out, 1);
@@ -369,7 +377,7 @@ static void PL(batch_one_by_one)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead
 
 /* After steps of which only the peaks are wanted: those at ends of steps are known before extremes are looked for, and
  * few are larger.  Where there may be more in between the steps are taken again, one by one. */
-PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(ahead) *ahead, const pl_lanes *y,
+PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(steps_ahead) *ahead, const pl_lanes *y,
                                    const pl_lanes *factor, const pl_lanes *state, const pl_lanes *top, pl_lanes *peak)
 {
     pl_lanes most[PL_PEAKS];
@@ -386,7 +394,7 @@ PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(ahead) *ahead, 
 }
 
 /* Instances from `first` on: mostly clear by what states and outputs are at most */
-PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, const int groups)
+PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, const int groups)
 {
     pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
     pl_lanes state[PL_GROUPS][PL_STATES], top[PL_GROUPS][PL_OUTPUTS]; /* the largest |state|, |output| */
@@ -434,14 +442,14 @@ PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(ahea
 #define PL_GO(groups) PL(lanes_go)(b, first, ahead, out, groups)
 #endif
 
-static void PL(batch_block)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+static void PL(batch_block)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
 {
     PL_GO(PL_GROUPS);
     (void)out;
 }
 
 #if PL_GROUPS > 1
-static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, real *out)
+static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
 {
     PL_GO(1);
     (void)out;
@@ -449,7 +457,7 @@ static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(ahead) *ahead, rea
 #endif
 
 /* As many whole blocks as there are, then single groups */
-static void PL(batch_go)(PL_INSTANCES *b, PL(ahead) *ahead, real *out)
+static void PL(batch_go)(PL_INSTANCES *b, PL(steps_ahead) *ahead, real *out)
 {
     size_t first = 0;
 #if PL_EVENTS
@@ -473,7 +481,7 @@ static void PL(batch_go)(PL_INSTANCES *b, PL(ahead) *ahead, real *out)
 /* ---- NAME_batch ---- */
 
 /* What instances share in the steps ahead, computed; of samples bounded where that does */
-static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
+static void PL(share)(PL_TYPE *s, const real *u, PL(steps_ahead) *ahead)
 {
     size_t k;
 #if PL_PEAKS > 0
@@ -512,7 +520,7 @@ static void PL(share)(PL_TYPE *s, const real *u, PL(ahead) *ahead)
 
 void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 {
-    PL(ahead) ahead;
+    PL(steps_ahead) ahead;
     for (; n > 0; n -= ahead.steps) {
         const size_t ready = PL_READY(b->shared.k);
         ahead.steps = n < ready ? n : ready;
@@ -553,7 +561,11 @@ static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
     PL(coeffs) c = PL(nominal);
     PL_TYPE one;
     size_t i;
+#if PL_TUNED
     int status = PL(retune)(&c, params, c.h);
+#else
+    int status = PL(retune)(&c, params, PL_H);
+#endif
     if (status == 0) {
         status = PL(batch_use)(b, j, &c);
     }

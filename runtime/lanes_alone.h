@@ -37,11 +37,59 @@ PL_LANES_INLINE void PL(lanes_report)(const PL_INSTANCES *b, size_t j, const pl_
     }
 }
 
-#if PL_EVENTS
+#if PL_OVER > 0
+/* What stands in an instance's rows, and in which: series_lanes.h */
+static void PL(own_take)(const real *row, PL_TYPE *one)
+{
+    memcpy(one->y, row, sizeof one->y);
+    memcpy(one->low, row + PL_STATES, sizeof one->low);
+#if PL_OVER > 1
+    one->served = (int)row[2 * PL_STATES];
+    memcpy(one->next, row + 2 * PL_STATES + 1, sizeof one->next);
+    memcpy(one->left, row + 3 * PL_STATES + 1, sizeof one->left);
+    memcpy(one->series, row + 4 * PL_STATES + 1, sizeof one->series);
+#endif
+}
+
+static void PL(own_give)(const PL_TYPE *one, real *row)
+{
+    memcpy(row, one->y, sizeof one->y);
+    memcpy(row + PL_STATES, one->low, sizeof one->low);
+#if PL_OVER > 1
+    row[2 * PL_STATES] = (real)one->served;
+    memcpy(row + 2 * PL_STATES + 1, one->next, sizeof one->next);
+    memcpy(row + 3 * PL_STATES + 1, one->left, sizeof one->left);
+    memcpy(row + 4 * PL_STATES + 1, one->series, sizeof one->series);
+#endif
+}
+
+/* Behind these its status */
+static void PL(marks_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+{
+    memcpy(&one->status, &b->y[PL_STEPPED * b->count + j], sizeof one->status);
+}
+
+static void PL(marks_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *one)
+{
+    memcpy(&b->y[PL_STEPPED * b->count + j], &one->status, sizeof one->status);
+}
+
+#elif PL_EVENTS
+static void PL(own_take)(const real *row, PL_TYPE *one)
+{
+    memcpy(one->y, row, sizeof one->y);
+}
+
+static void PL(own_give)(const PL_TYPE *one, real *row)
+{
+    memcpy(row, one->y, sizeof one->y);
+    row[PL_STATES] = (real)one->contact.region;
+}
+
 /* Of an instance the numbers in which its contact and status stand */
 #define PL_CONTACT_ROWS ((sizeof(pl_contact) + sizeof(int) + sizeof(real) - 1) / sizeof(real))
 
-static void PL(contact_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
+static void PL(marks_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
 {
     real row[PL_CONTACT_ROWS];
     size_t i;
@@ -52,7 +100,7 @@ static void PL(contact_read)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
     memcpy(&one->status, (const char *)row + sizeof one->contact, sizeof one->status);
 }
 
-static void PL(contact_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *one)
+static void PL(marks_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *one)
 {
     pl_contact contact = one->contact;
     real row[PL_CONTACT_ROWS] = {0};
@@ -65,24 +113,54 @@ static void PL(contact_write)(PL_INSTANCES *b, size_t j, const PL_TYPE *one)
     }
 }
 
-void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
+#endif
+
+#if PL_FACTORS > 0
+static void PL(batch_factors)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
 {
     size_t i;
-    *s = b->shared;
-    for (i = 0; i < PL_STATES; i++) {
-        s->y[i] = b->y[i * b->count + j];
+    for (i = 0; i < PL_FACTORS && b->factors; i++) {
+        memcpy((char *)one + PL(factor_at)[i], &b->factors[i * b->count + j], sizeof(real));
     }
-    PL(contact_read)(b, j, s);
+}
+#endif
+
+#if PL_EVENTS
+/* What is of instance j alone, over what all share; row: what lanes have of it */
+static void PL(own_read)(const PL_INSTANCES *b, size_t j, const real *row, PL_TYPE *one)
+{
+    PL(own_take)(row, one);
+    PL(marks_read)(b, j, one);
+#if PL_FACTORS > 0
+    PL(batch_factors)(b, j, one);
+#endif
+}
+
+static void PL(row_read)(const PL_INSTANCES *b, size_t j, real row[PL_STEPPED])
+{
+    size_t i;
+    for (i = 0; i < PL_STEPPED; i++) {
+        row[i] = b->y[i * b->count + j];
+    }
+}
+
+void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
+{
+    real row[PL_STEPPED];
+    PL(row_read)(b, j, row);
+    *s = b->shared;
+    PL(own_read)(b, j, row, s);
 }
 
 void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 {
+    real row[PL_STEPPED];
     size_t i;
-    for (i = 0; i < PL_STATES; i++) {
-        b->y[i * b->count + j] = s->y[i];
+    PL(own_give)(s, row);
+    for (i = 0; i < PL_STEPPED; i++) {
+        b->y[i * b->count + j] = row[i];
     }
-    b->y[PL_STATES * b->count + j] = (real)s->contact.region;
-    PL(contact_write)(b, j, s);
+    PL(marks_write)(b, j, s);
 }
 
 #else
@@ -109,16 +187,6 @@ static void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 }
 #endif
 
-#if PL_FACTORS > 0
-static void PL(batch_factors)(const PL_INSTANCES *b, size_t j, PL_TYPE *one)
-{
-    size_t i;
-    for (i = 0; i < PL_FACTORS && b->factors; i++) {
-        memcpy((char *)one + PL(factor_at)[i], &b->factors[i * b->count + j], sizeof(real));
-    }
-}
-#endif
-
 /* As instance j; its peaks are what its outputs are now. */
 static void PL(batch_begin)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 {
@@ -140,7 +208,12 @@ int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
 {
     PL_TYPE one = b->shared;
     size_t i;
-    if (!b->factors || !(c->h == b->shared.coeffs.h)) {
+#if PL_TUNED
+    if (!(c->h == b->shared.coeffs.h)) {
+        return PL_NO_STEP;
+    }
+#endif
+    if (!b->factors) {
         return PL_NO_STEP;
     }
     one.coeffs = *c;
@@ -188,19 +261,21 @@ int PL(batch_status)(const PL_INSTANCES *b, size_t j)
 /* ---- steps by themselves ---- */
 
 /* Instance j, lane l of y, after k steps of those ahead */
-static void PL(lane_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, const pl_lanes *y,
+static void PL(lane_alone)(const PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, size_t k, const pl_lanes *y,
                            size_t l, PL_TYPE *one)
 {
+    real row[PL_STEPPED];
     int i;
-    memcpy(one, ahead->head[k], sizeof ahead->head[k]);
-    PL(contact_read)(b, j, one);
-    for (i = 0; i < PL_STATES; i++) {
-        one->y[i] = PL(lane)(&y[i], l);
+    for (i = 0; i < PL_STEPPED; i++) {
+        row[i] = PL(lane)(&y[i], l);
     }
+    memcpy(one, ahead->head[k], sizeof ahead->head[k]);
+    PL(own_read)(b, j, row, one);
 }
 
 /* Step k of the lanes from instance j on that `kept` has no bit of */
-static void PL(step_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, pl_lanes *y, unsigned kept)
+static void PL(step_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, size_t k, pl_lanes *y,
+                           unsigned kept)
 {
     size_t l;
     int i;
@@ -208,25 +283,31 @@ static void PL(step_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, si
 #if PL_INPUTS > 0
         const real *const u = ahead->u + (k - 1) * PL_INPUTS;
 #endif
+        real row[PL_STEPPED];
         PL_TYPE one;
         if (kept >> l & 1) {
             continue;
         }
         PL(lane_alone)(b, j + l, ahead, k - 1, y, l, &one);
         PL(step)(&one PL_GIVEN);
-        for (i = 0; i < PL_STATES; i++) {
-            PL(set_lane)(&y[i], l, one.y[i]);
+        PL(own_give)(&one, row);
+        for (i = 0; i < PL_STEPPED; i++) {
+            PL(set_lane)(&y[i], l, row[i]);
         }
-        PL(set_lane)(&y[PL_STATES], l, (real)one.contact.region);
-        PL(contact_write)(b, j + l, &one);
+        PL(marks_write)(b, j + l, &one);
     }
 }
 
 /* A step: those in lanes that are sure to have no event, then the others.  Only for these lanes are in memory. */
-PL_LANES_INLINE void PL(lanes_step_all)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, pl_lanes *y,
-                                        const pl_lanes *factor)
+PL_LANES_INLINE void PL(lanes_step_all)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, size_t k, pl_lanes *y,
+                                        const pl_lanes *factor, int seen)
 {
+#if PL_OVER > 1
+    const unsigned kept = pl_lanes_flags(PL(lanes_pass)(y, factor, ahead->now[k], seen || k == ahead->steps));
+#else
     const unsigned kept = pl_lanes_flags(PL(lanes_step)(y, factor, ahead->now[k]));
+    (void)seen;
+#endif
     if (kept != ((unsigned)1 << (PL_AT_ONCE - 1)) * 2 - 1) {
         pl_lanes now[PL_STEPPED];
         memcpy(now, y, sizeof now);
@@ -237,7 +318,7 @@ PL_LANES_INLINE void PL(lanes_step_all)(PL_INSTANCES *b, size_t j, const PL(ahea
 
 #if PL_OUT_ALONE
 /* Outputs after step k that no sum over lanes gives */
-static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, size_t k, const pl_lanes *y,
+static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, size_t k, const pl_lanes *y,
                           pl_lanes *value)
 {
     size_t l;
@@ -258,16 +339,15 @@ static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(ahead) *ahea
 #endif
 
 /* Each instance by itself over the steps ahead: with few lanes that takes less. */
-static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, real *out)
+static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, real *out)
 {
     const real *u = ahead->u;
+    real row[PL_STEPPED];
     PL_TYPE one;
     size_t k, i;
+    PL(row_read)(b, j, row);
     memcpy(&one, ahead->head[0], sizeof ahead->head[0]);
-    PL(contact_read)(b, j, &one);
-    for (i = 0; i < PL_STATES; i++) {
-        one.y[i] = b->y[i * b->count + j];
-    }
+    PL(own_read)(b, j, row, &one);
     for (k = 0; k < ahead->steps; k++) {
         PL(step)(&one PL_GIVEN);
         u += PL_INPUTS;
@@ -288,7 +368,7 @@ static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(ahead) *ahead, re
     PL(batch_give)(b, j, &one);
 }
 
-static size_t PL(all_alone)(PL_INSTANCES *b, const PL(ahead) *ahead, real *out)
+static size_t PL(all_alone)(PL_INSTANCES *b, const PL(steps_ahead) *ahead, real *out)
 {
     size_t j = 0;
     for (; PL_AT_ONCE < PL_LANES_PAY && j < b->count; j++) {

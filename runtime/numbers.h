@@ -170,6 +170,9 @@
 #ifndef PL_OUT_SIZE
 #define PL_OUT_SIZE 0
 #endif
+#ifndef PL_TUNED
+#define PL_TUNED 0
+#endif
 #ifndef PL_OVER
 #define PL_OVER 0
 #endif

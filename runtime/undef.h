@@ -146,6 +146,10 @@
 #undef PL_H
 #undef PL_HALVINGS
 #undef PL_HAS
+#undef PL_HEAD
+#undef PL_SERVED_ROW
+#undef PL_END_ROW
+#undef PL_SERIES_ROW
 #undef PL_FAILS
 #undef PL_AND
 #undef PL_HERE

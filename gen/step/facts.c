@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What is so of a step, and what stands against what is asked of it. */
 #include "step/linear/rows.h"
+#include "step/series/expansion.h"
 #include "step/tunable/tuned.h"
 
 /* One matrix over all of a step, of all of x, and outputs that are rows over it? */
@@ -24,6 +25,16 @@ static bool lacks_values(const struct step *step)
 	return !step->series.emitted && !step->event_split && !step->taylor.expansion && !step->collocation;
 }
 
+/* A series of fixed order is one text for all instances, and for all steps. */
+static bool adapts(const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct expansion *x = step->taylor.expansion;
+	return flow_of(model) == FLOW_SERIES &&
+	       (!x || x->columns || x->choices || x->slots || step->taylor.switching || model->truncation.adaptive ||
+		mpq_sgn(model->truncation.tolerance) != 0);
+}
+
 struct facts facts_of_step(const struct step *step)
 {
 	struct facts facts = facts_of_model(step->model);
@@ -31,6 +42,8 @@ struct facts facts_of_step(const struct step *step)
 	facts.sought = peaks_by_values(step);
 	facts.loops = step->program && step->program->loops;
 	facts.modal = step->modal != NULL;
+	facts.adapts = adapts(step);
+	facts.staged = step->taylor.expansion && step->taylor.expansion->lines;
 	facts.checked = step->regions.event_check.by_region && !step->model->params.retuned && !step->is.two_words &&
 			!step->carried.count && !step->model->relative;
 	return facts;

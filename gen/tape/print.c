@@ -119,6 +119,18 @@ static const char *accumulated_text(struct printing *p, const struct tape_node *
 		      p->to->operand(p->to->context, n));
 }
 
+/* Of <math.h>; of lanes the function that takes each by itself */
+static const char *function_text(struct printing *p, tape_ref ref, const char *function)
+{
+	const struct tape_node *n = tape_node(p->t, ref);
+	if (!p->wide || !p->wide[ref])
+		return call_text(p, function, n);
+	const char *name = format("%s%s", p->to->lanes->function, function);
+	const char *first = widened(p, n->a, argument_of(p, n->a));
+	return n->b == TAPE_NONE ? format("%s(%s)", name, first)
+				 : format("%s(%s, %s)", name, first, widened(p, n->b, argument_of(p, n->b)));
+}
+
 static const char *bare_text(struct printing *p, tape_ref ref, int indent)
 {
 	const struct tape_node *n = tape_node(p->t, ref);
@@ -136,9 +148,9 @@ static const char *bare_text(struct printing *p, tape_ref ref, int indent)
 		x = word_of(p, n->a);
 		return format("(%s)((%s > 0.0) - (%s < 0.0))", p->to->real, x, x);
 	case TAPE_SIZE:     return call_text(p, p->to->size, n);
-	case TAPE_CALL:     return call_text(p, function_name((enum function)n->index), n);
-	case TAPE_POWER:    return call_text(p, "pow", n);
-	case TAPE_ATAN2:    return call_text(p, "atan2", n);
+	case TAPE_CALL:     return function_text(p, ref, function_name((enum function)n->index));
+	case TAPE_POWER:    return function_text(p, ref, "pow");
+	case TAPE_ATAN2:    return function_text(p, ref, "atan2");
 	case TAPE_ADD:      return sum_text(p, n, indent);
 	case TAPE_MUL:
 	case TAPE_DIV:      return product_text(p, n, indent);

@@ -152,6 +152,7 @@ tape_ref tape_expression(struct tape_expressions *x, const struct node *node);
  * are widened only where they are set, or accumulated. */
 struct tape_lanes {
 	const char *type, *widen;   /* the function that makes lanes of a number */
+	const char *function;       /* before the name of a function of lanes that is one of <math.h> of each */
 	bool (*varies)(const void *context, const struct tape_node *node); /* an operand */
 };
 struct tape_target {

@@ -54,7 +54,7 @@ static void start(m_instances *b)
         real params[M_PARAMS];
         for (i = 0; i < M_PARAMS; i++)
             params[i] = m_nominal.params[i] * (real)(1.0 + 0.2 * draw());
-        if (m_retune(&c, params, m_nominal.h) == 0) {
+        if (m_retune(&c, params, M_H) == 0) {
             m_use(&alone[j], &c);
             if (m_batch_use(b, j, &c) != 0)
                 printf("# instance %zu does not take its coefficients\n", j);

@@ -3,11 +3,13 @@
 #include "inner.h"
 #include "emit/declarations.h"
 #include "emit/regions/regions.h"
+#include "emit/series/series.h"
 #include "emit/state.h"
 #include "emit/steps.h"
 #include "model/contacts/contacts.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
+#include "step/series/expansion.h"
 
 #include <string.h>
 
@@ -49,6 +51,8 @@ static int rows_of(const struct emitter *e)
 /* Behind the states of a model of regions: the region, and contact and status as bytes */
 static const char *row_count(const struct emitter *e)
 {
+	if (has_series(e))
+		return format("%d", batch_stepped_rows(e) + 1);
 	if (has_regions(e))
 		return spell(e, "$N_STATES + 1 +\n"
 				"       (int)((sizeof(pl_contact) + sizeof(int) + sizeof(double) - 1) / "
@@ -63,6 +67,9 @@ static const char *row_list(const struct emitter *e)
 	const char *list = "";
 	for (int i = 0; i < count; i++)
 		list = format("%s%s%s", list, i ? ", " : "", member[i].name);
+	if (has_series(e))
+		return format("states, low parts,%s and the bytes of its status",
+			      spans_steps(e) ? " how far its series is served, where that ends, the series," : "");
 	if (has_regions(e))
 		return format("%s, its region, and the bytes of contact and status", list);
 	return list;
@@ -117,10 +124,10 @@ void emit_batch_declarations(const struct emitter *e)
 	if (b.factors)
 		say(e, "/* Instance j goes on with c; PL_NO_STEP: its h is not that of shared, or b has no factors */\n"
 		       "int    $n_batch_use($n_instances *b, size_t j, const $n_coeffs *c);\n");
-	if (e->step->no.lanes || has_regions(e))
+	if (e->step->no.lanes || leaves_lanes(e))
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
-	if (!e->step->no.lanes && !has_regions(e) && !has_peaks(e))
+	if (!e->step->no.lanes && !leaves_lanes(e) && !has_peaks(e))
 		say(e, "/* For $n_kernel on a device (plgen --target): now[n + 1][$N_BATCH_SHARED] receives what all\n"
 		       " * share in n steps%s; time goes on. */\n"
 		       "enum { $N_BATCH_SHARED = %d };\n"
@@ -160,6 +167,8 @@ static void emit_shared(const struct batch *b)
 	const struct emitter *e = b->e;
 	if (has_regions(e))
 		emit_shared_of_regions(e);
+	else if (has_series(e))
+		emit_shared_of_series(b);
 	else
 		emit_shared_of_linear(b);
 	open_function(e, "now receives what all instances share in the outputs after a step",
@@ -234,9 +243,12 @@ static void emit_include(const struct batch *b)
 	const struct denormal_flush *flush = e->step->linear.flush;
 	emit_sizes(e, "batch.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
-		   { "ROWS", has_regions(e) ? 0 : rows_of(e) }, { "EVENTS", has_regions(e) },
+		   { "EVENTS", leaves_lanes(e) },
+		   { "ORDER", has_series(e) ? own_expansion(e)->order : 0 },
+		   { "OVER", !has_series(e) ? 0 : spans_steps(e) ? e->model->truncation.over : 1 },
+		   { "TUNED", e->step->is.tuned },
 		   { "OUT_ALONE", b->out_alone },
-		   { "SHARES", !has_regions(e) && !has_peaks(e) },
+		   { "SHARES", !leaves_lanes(e) && !has_peaks(e) },
 		   { "LANES_PAY", !has_regions(e) ? 0 : has_events(e->model->switching) ? 3 : 2 },
 		   { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
@@ -245,6 +257,7 @@ static void emit_include(const struct batch *b)
 		   { "FLUSHES", flush ? flush->parts : 0 }, { "DECAYING", flush ? flush->decaying : 0 },
 		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#define PL_INSTANCES $n_instances\n");
+	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
 	if (has_peaks(e))
 		say_macro(e, "NOMINAL", e->step->is.tuned ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
 	say(e, "#include \"batch.h\"\n");
@@ -271,6 +284,8 @@ void emit_batch(const struct emitter *e)
 	emit_shared(&b);
 	if (has_regions(e))
 		emit_lanes_of_regions(e);
+	else if (has_series(e))
+		emit_lanes_of_series(&b);
 	else
 		emit_lanes_step(&b);
 	if (!b.out_alone)

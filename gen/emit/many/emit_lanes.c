@@ -2,10 +2,12 @@
 /* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
  * many instances as there are lanes, from the arrays and back. */
 #include "inner.h"
+#include "emit/series/series.h"
 #include "emit/state.h"
 #include "emit/steps.h"
 #include "step/exponential/recipe.h"
 #include "step/linear/rows.h"
+#include "step/series/expansion.h"
 
 #include <string.h>
 
@@ -14,6 +16,16 @@ enum { MOST_GROUPS = 4 };
 bool has_regions(const struct emitter *e)
 {
 	return e->step->is.events == EVENTS_OF_REGIONS;
+}
+
+bool has_series(const struct emitter *e)
+{
+	return flow_of(e->model) == FLOW_SERIES && !has_regions(e);
+}
+
+bool leaves_lanes(const struct emitter *e)
+{
+	return has_regions(e) || has_series(e);
 }
 
 /* ---- what instances share, and what each has ---- */
@@ -47,10 +59,11 @@ static const char *shared_operand(const struct emitter *e, const struct tape_nod
 	}
 }
 
-static void share_operands(struct batch *b, const struct tape *t, int from)
+static void share_operands(struct batch *b, const struct tape *t, int from, shared_text *text_of)
 {
+	const int *uses = tape_uses(t);
 	for (int i = 0; i < tape_length(t); i++) {
-		const char *text = shared_operand(b->e, tape_node(t, i));
+		const char *text = uses[i] ? text_of(b->e, tape_node(t, i)) : NULL;
 		if (text)
 			share(b, from, text);
 	}
@@ -84,6 +97,28 @@ static bool only_samples_act(const struct emitter *e)
 	return e->system->states + columns == e->step->layout.size;
 }
 
+/* Under the names of emit_expansion_locals */
+const char *shared_of_series(const struct emitter *e, const struct tape_node *n)
+{
+	switch (n->op) {
+	case TAPE_LOAD:  return load_operand(e, n->index, n->part);
+	case TAPE_INPUT: return input_name(e, n->index, n->part);
+	case TAPE_TIME:  return "t";
+	default:         return NULL;
+	}
+}
+
+/* Params are of the instance, all of them, since its outputs read some alone. */
+static void plan_series(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	b->step = tape_of_series(e);
+	share_operands(b, b->step, 0, shared_of_series);
+	for (int k = 0; k < e->model->spec->tuned.count; k++)
+		batch_factor(b, param_text(e, k));
+	b->lanes = b->factors;
+}
+
 /* Outputs as rows over states and what all share; NULL: with regions some are more than that */
 static struct tape *outputs_as_rows(const struct emitter *e)
 {
@@ -94,7 +129,7 @@ static struct tape *outputs_as_rows(const struct emitter *e)
 			return NULL;
 		tape_set(t, format("out[%d]", i), tape_of_row(t, e->step, output), 13, output->name);
 	}
-	return has_regions(e) && tape_reads(t, TAPE_TABLE, -1, -1) ? NULL : t;
+	return leaves_lanes(e) && tape_reads(t, TAPE_TABLE, -1, -1) ? NULL : t;
 }
 
 struct batch plan_batch(const struct emitter *e)
@@ -106,14 +141,16 @@ struct batch plan_batch(const struct emitter *e)
 	if (has_regions(e)) {
 		b.shared = e->step->layout.size - e->system->states;
 		b.shared_text = ARRAY(const char *, (size_t)b.shared + 1);
+	} else if (has_series(e)) {
+		plan_series(&b);
 	} else {
 		tape_of_step(b.step, &now, NULL, "y", NULL);
-		share_operands(&b, b.step, 0);
+		share_operands(&b, b.step, 0, shared_operand);
 	}
 	b.after = b.shared;
 	b.out_alone = !b.out;
 	b.out = b.out ? b.out : tape_new();
-	share_operands(&b, b.out, b.after);
+	share_operands(&b, b.out, b.after, shared_operand);
 	if (e->step->forced && !rows_sustained(e->step)) {
 		b.forced = b.shared;
 		b.shared += e->system->states;
@@ -124,22 +161,36 @@ struct batch plan_batch(const struct emitter *e)
 	return b;
 }
 
+/* As series_lanes.h lists them */
+static int series_rows(const struct emitter *e)
+{
+	const int states = e->system->states;
+	return 2 * states + (spans_steps(e) ? 1 + (own_expansion(e)->order + 3) * states : 0);
+}
+
 /* Rows that a step changes of an instance's memory, the first of them */
 int batch_stepped_rows(const struct emitter *e)
 {
+	if (has_series(e))
+		return series_rows(e);
 	return e->system->states * (e->step->program->compensated ? 2 : 1) + e->step->carried.count + has_regions(e);
 }
 
 /* Groups of lanes that step in turns, so that sums of one wait for none of their own */
 int batch_groups(const struct emitter *e)
 {
-	int groups = has_regions(e) ? 1 : 8 / batch_stepped_rows(e);
+	int groups = leaves_lanes(e) ? 1 : 8 / batch_stepped_rows(e);
 	return groups < 1 ? 1 : groups > MOST_GROUPS ? MOST_GROUPS : groups;
 }
 
 /* ---- tapes over lanes ---- */
 
-struct over_lanes { struct batch *b; int from; }; /* where what is shared stands */
+struct over_lanes {
+	struct batch *b;
+	int from;                       /* where what is shared stands */
+	shared_text *text_of;
+	bool indexed;                   /* states have no names */
+};
 
 /* Rows of an instance, of what rounding takes from a state */
 static const char *rest_row(const struct emitter *e, const struct tape_node *n)
@@ -153,24 +204,27 @@ static const char *operand_over_lanes(const void *context, const struct tape_nod
 	const struct over_lanes *over = context;
 	const struct emitter *e = over->b->e;
 	if (n->op == TAPE_STATE)
-		return e->local[n->index];
+		return over->indexed ? format("y[%d]", n->index) : e->local[n->index];
+	if (n->op == TAPE_PARAM)
+		return batch_factor(over->b, param_text(e, n->index));
 	if (n->op == TAPE_ACCUMULATE)
 		return rest_row(e, n);
 	if (n->op == TAPE_TABLE)
 		return batch_factor(over->b, linear_entry(e, n));
-	return format("now[%d]", share(over->b, over->from, shared_operand(e, n)));
+	return format("now[%d]", share(over->b, over->from, over->text_of(e, n)));
 }
 
 static bool varies(const void *context, const struct tape_node *n)
 {
 	(void)context;
-	return n->op == TAPE_STATE || n->op == TAPE_TABLE;
+	return n->op == TAPE_STATE || n->op == TAPE_TABLE || n->op == TAPE_PARAM;
 }
 
-static void emit_over_lanes(struct batch *b, const struct tape *t, int from)
+void emit_over_lanes(struct batch *b, const struct tape *t, int from, shared_text *text_of)
 {
-	static const struct tape_lanes lanes = { "pl_lanes", "pl_lanes_all", varies };
-	const struct over_lanes over = { b, from };
+	const bool indexed = text_of != shared_operand;
+	const struct tape_lanes lanes = { "pl_lanes", "pl_lanes_all", spell(b->e, "$n_lanes_"), varies };
+	const struct over_lanes over = { b, from, text_of, indexed };
 	const struct tape_target to = { .real = "double", .operand = operand_over_lanes,
 					.accumulate = "pl_lanes_accumulate", .context = &over, .indent = 4,
 					.lanes = &lanes };
@@ -216,7 +270,7 @@ void emit_lanes_step(struct batch *b)
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->step, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
-	emit_over_lanes(b, b->step, 0);
+	emit_over_lanes(b, b->step, 0, shared_operand);
 }
 
 /* A state as outputs read it: of momenta the velocity, of what is kept less its forced part the whole */
@@ -237,7 +291,7 @@ void emit_lanes_out(struct batch *b)
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->out, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
-	emit_over_lanes(b, b->out, b->after);
+	emit_over_lanes(b, b->out, b->after, shared_operand);
 }
 
 /* ---- peaks ---- */

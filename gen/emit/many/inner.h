@@ -19,7 +19,15 @@ struct batch {
 	const char **factor_text;       /* s->coeffs.step[0][1] */
 };
 
-bool has_regions(const struct emitter *e);                        /* lanes leave what may have an event in a step */
+bool has_regions(const struct emitter *e);
+bool has_series(const struct emitter *e);
+bool leaves_lanes(const struct emitter *e);     /* what may have an event in a step, or loses the finite numbers */
+typedef const char *shared_text(const struct emitter *e, const struct tape_node *n); /* C of what all share; NULL */
+void emit_over_lanes(struct batch *b, const struct tape *t, int from, shared_text *text_of);
+/* emit_lanes_series.c: steps of a series of fixed order */
+shared_text shared_of_series;
+void emit_shared_of_series(const struct batch *b);
+void emit_lanes_of_series(struct batch *b);
 struct batch plan_batch(const struct emitter *e);
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */

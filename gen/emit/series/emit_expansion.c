@@ -102,16 +102,29 @@ static const char *term_of_series(const struct emitter *e, int state, int k)
 	return coefficient(e, state, k) ? format("c[%d][%d]", k, state) : NULL;
 }
 
+static void emit_ends(const struct emitter *e, const char *accumulate, const char *none)
+{
+	for (int i = 0; i < e->system->states; i++)
+		say_wrapped(e, format("end[%d] = %s(y[%d], %s, &low[%d]);\n", i, accumulate, i,
+				      full_gain(e, i, term_of_series, none), i));
+	close_function(e, "");
+}
+
 /* Of fixed order: all of it */
 static void emit_total(const struct emitter *e)
 {
 	open_function(e, "The end of the series that begins at y: high and low parts",
 		      "static inline void $n_total(const double c[%d][$c], const double y[$N_STATES], "
 		      "double end[$N_STATES], double low[$N_STATES])", own_expansion(e)->order + 1);
-	for (int i = 0; i < e->system->states; i++)
-		say_wrapped(e, format("end[%d] = pl_accumulate(y[%d], %s, &low[%d]);\n", i, i,
-				      full_gain(e, i, term_of_series), i));
-	close_function(e, "");
+	emit_ends(e, "pl_accumulate", "0.0");
+}
+
+void emit_lanes_total(const struct emitter *e)
+{
+	open_function(e, "Where it ends: high and low parts",
+		      "PL_LANES_INLINE void $n_lanes_total(pl_lanes (*c)[$N_STATES], const pl_lanes *y, pl_lanes *end, "
+		      "pl_lanes *low)");
+	emit_ends(e, "pl_lanes_accumulate", "pl_lanes_all(0.0)");
 }
 
 /* m^2 to m^order, each from two before it: then no more than a product and sums wait for the last coefficient */

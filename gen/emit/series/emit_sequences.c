@@ -72,7 +72,7 @@ void emit_inputs_now(const struct emitter *e)
 	close_function(e, "s u");
 }
 
-static void emit_expansion_locals(const struct emitter *e)
+void emit_expansion_locals(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
 	bool offset = has_offset(e);
@@ -151,6 +151,13 @@ static void set_kept_coefficients(const struct emitter *e, struct recurrences *r
 				tape_set(t, target, tape_number(t, 0), 10, NULL);
 		}
 	series_set_sizes(r, x, "terms");
+}
+
+struct tape *tape_of_series(const struct emitter *e)
+{
+	struct recurrences *r = series_new(e);
+	set_kept_coefficients(e, r);
+	return tape_of_recurrences(r);
 }
 
 /* ---- functions of them: the series of the solution, or some sequences alone ---- */
@@ -239,7 +246,7 @@ const char *plus(const char *sum, const char *term)
 }
 
 /* c_1 + ... + c_P as what is added and what is small beside it: the last three, which come late. Small ones first */
-const char *full_gain(const struct emitter *e, int state, gain_term *term)
+const char *full_gain(const struct emitter *e, int state, gain_term *term, const char *none)
 {
 	enum { LATE = 3 };
 	int order = own_expansion(e)->order;
@@ -248,14 +255,14 @@ const char *full_gain(const struct emitter *e, int state, gain_term *term)
 		late = plus(late, term(e, state, k));
 	for (int k = order - LATE; k > 0; k--)
 		text = plus(text, term(e, state, k));
-	return format("%s, %s", *text ? text : "0.0", *late ? late : "0.0");
+	return format("%s, %s", *text ? text : none, *late ? late : none);
 }
 
 void emit_series_ends(const struct emitter *e)
 {
 	for (int i = 0; i < e->system->states; i++)
 		say_wrapped(e, format("const double next%d = pl_accumulate(%s, %s, &low%d);\n", i,
-				      coefficient(e, i, 0), full_gain(e, i, coefficient), i));
+				      coefficient(e, i, 0), full_gain(e, i, coefficient, "0.0"), i));
 }
 
 /* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */

@@ -8,14 +8,14 @@
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at, beside an adaptive series */
-bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */
 void emit_coefficients(const struct emitter *e);                  /* locals: from y, now */
 bool expands_in_step(const struct emitter *e);                    /* the step of fixed order does, without a call */
 const char *plus(const char *sum, const char *term);                     /* in brackets; either may be nothing */
-const char *full_gain(const struct emitter *e, int state, gain_term *term); /* C: two arguments of pl_accumulate */
+/* C: two arguments of pl_accumulate; `none` where there are no terms */
+const char *full_gain(const struct emitter *e, int state, gain_term *term, const char *none);
 void emit_series_ends(const struct emitter *e);                         /* next0, rest0, ...: where it ends */
 const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */

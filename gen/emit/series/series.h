@@ -6,6 +6,7 @@
 #include "base/base.h"
 
 struct expansion;
+struct tape;
 
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
@@ -20,6 +21,9 @@ struct recurrences *series_new(const struct emitter *e);          /* under the n
 /* What the values are summed from of what the search of events looks at, into target[] */
 void series_set_sizes(struct recurrences *r, const struct expansion *x, const char *target);
 void emit_series_tape(const struct emitter *e, const struct recurrences *r);
+struct tape *tape_of_series(const struct emitter *e);             /* all that is kept, into c[][] */
+void emit_expansion_locals(const struct emitter *e);              /* what it reads of loads, inputs and time */
+bool spans_steps(const struct emitter *e);                        /* one expansion of fixed order is over several */
 /* gain_term: a coefficient of a state, as C; NULL: it is 0 */
 typedef const char *gain_term(const struct emitter *e, int state, int k);
 
@@ -50,6 +54,7 @@ void emit_pass_time(const struct emitter *e);                            /* NAME
 void emit_serving_step(const struct emitter *e);                         /* NAME_step, by NAME_serve */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);
+void emit_lanes_total(const struct emitter *e);                  /* NAME_lanes_total */
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
