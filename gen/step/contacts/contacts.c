@@ -234,8 +234,10 @@ static int force_in_cases(struct together *t, int next)
 static bool moves(const struct constraints *all, int members, const int *member)
 {
 	bool any = false;
-	for (int i = 0; i < members; i++)
-		any = any || all->constraint[member[i]].moving;
+	for (int i = 0; i < members; i++) {
+		const struct constraint *h = &all->constraint[member[i]];
+		any = any || h->moving || (h->drag != NONE && all->w->step->model->contacts.drag[h->drag].by);
+	}
 	for (int i = 0; i < members * members; i++)
 		any = any || !is_number_entry(&all->constraint[member[i / members]].delassus[member[i % members]]);
 	return any;
