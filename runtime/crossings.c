@@ -163,7 +163,7 @@ static PL_APART event first_event(const pl_switching *m, const instant *at, real
         const real *row = m->row + w.i * m->size;
         const real size = sizes(m->size, row, coefficients);
         int upward;
-        pl_multiply(terms, m->size, coefficients, row, e);
+        expand_row(m->size, terms, row, coefficients, e);
         for (upward = 0; upward < 2; upward++) {
             const int breakpoint = w.interval - !upward;
             real s;

@@ -188,7 +188,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
         const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
         real s, next;
         int has_left;
-        pl_multiply(terms, n, coefficients, row, e);
+        expand_row(n, terms, row, coefficients, e);
         VARIED(miss(m, at, k, e);)
         next = m->guard[k].impact >= 0 && e[1] < 0 ? sizes(n, row, coefficients + n) : -1;
         has_left = next >= 0 && magnitude(e[0] - m->limit[k]) <= noise_of(magnitude(m->limit[k]) + size + next);

@@ -78,18 +78,73 @@ static inline int heading(int n, const real *A, const real *row, const real *x, 
     return 0;
 }
 
+/* What is not 0 in a matrix, row by row: few sums are as long as its rows. */
+typedef struct sparse {
+    unsigned short end[16], column[64];
+} sparse;
+
+/* Whether there is room for it */
+static inline int fill_sparse(int n, const real *A, sparse *of)
+{
+    enum { ROWS = sizeof of->end / sizeof *of->end, MOST_SPARSE = sizeof of->column / sizeof *of->column };
+    int i, j, count = 0;
+    for (i = 0; i < n && n <= ROWS; i++) {
+        for (j = 0; j < n && count < MOST_SPARSE; j++) {
+            of->column[count] = (unsigned short)j;
+            count += A[i * n + j] < 0 || A[i * n + j] > 0;
+        }
+        of->end[i] = (unsigned short)count;
+    }
+    return n <= ROWS && count < MOST_SPARSE;
+}
+
+/* y = factor A x */
+static inline void multiply_sparse(int n, const sparse *of, const real *A, real factor, const real *x, real *y)
+{
+    int i, k = 0;
+    for (i = 0; i < n; i++, A += n) {
+        const int end = of->end[i];
+        real sum = 0;
+        for (; k < end; k++) {
+            const int j = of->column[k];
+            sum += A[j] * x[j];
+        }
+        y[i] = sum * factor;
+    }
+}
+
 /* The coefficients of x(s) = e^{A dt s} x */
 static inline void expand(int n, int degree, const real *A, real dt, const real *x, real *coefficients)
 {
+    sparse of;
+    const int few = fill_sparse(n, A, &of);
     int i, k;
     for (i = 0; i < n; i++) {
         coefficients[i] = x[i];
     }
     for (k = 1; k <= degree; k++, coefficients += n) {
         const real factor = dt / (real)k;
+        if (few) {
+            multiply_sparse(n, &of, A, factor, coefficients, coefficients + n);
+            continue;
+        }
         pl_multiply(n, n, A, coefficients, coefficients + n);
         for (i = 0; i < n; i++) {
             coefficients[n + i] *= factor;
+        }
+    }
+}
+
+/* e(s) = row . x(s), by its coefficients */
+static inline void expand_row(int n, int terms, const real *row, const real *coefficients, real *e)
+{
+    int j, k;
+    for (k = 0; k < terms; k++) {
+        e[k] = 0;
+    }
+    for (j = 0; j < n; j++) {
+        for (k = 0; k < terms && (row[j] < 0 || row[j] > 0); k++) {
+            e[k] += row[j] * coefficients[k * n + j];
         }
     }
 }
@@ -177,20 +232,30 @@ static inline int look_behind(beyond *f, const real *e, real terms)
     return rises;
 }
 
-/* The root between a, where g < 0, and z, where g > 0; g rises all the way.  Newton's method, kept safe by halving. */
-static real root_between(const beyond *f, point a, point z)
+/* One more look at a polynomial, of those that a step has; 0: they are used up */
+static int has_look(int *splits)
+{
+    return --*splits >= 0;
+}
+
+/* The root between a, where g < 0, and z, where g > 0, the only one.  Newton's method, kept safe by halving; -1: there
+ * are no looks left */
+static real root_between(const beyond *f, point a, point z, int *splits)
 {
     const real enough = SHORT; /* the step after that would be below rounding */
     real s = a.s + (z.s - a.s) * (a.g / (a.g - z.g));
-    int i;
+    int i, k;
     for (i = 0; i < 64; i++) {
-        const point p = point_of(f, s);
-        const real newton = s - p.g / p.slope;
-        if (p.g > 0) {
-            z = p;
-        } else {
-            a = p;
+        real g = 0, slope = 0, newton;
+        if (!has_look(splits)) {
+            return -1;
         }
+        for (k = f->degree; k >= 0; k--) {
+            slope = slope * s + g;
+            g = g * s + f->coefficient[k];
+        }
+        newton = s - g / slope;
+        *(g > 0 ? &z.s : &a.s) = s;
         if (magnitude(newton - s) <= enough && newton >= a.s && newton <= z.s) {
             return newton;
         }
@@ -199,7 +264,7 @@ static real root_between(const beyond *f, point a, point z)
     return s;
 }
 
-enum { NO_CROSSING, RISES, UNKNOWN }; /* what is known of g between two points */
+enum { NO_CROSSING, RISES, BENDS, UNKNOWN }; /* what is known of g between two points; BENDS: it has a top there */
 
 static int between(const beyond *f, point a, point z)
 {
@@ -212,7 +277,40 @@ static int between(const beyond *f, point a, point z)
     if (larger(a.slope, z.slope) + w * third < 0) {
         return NO_CROSSING;
     }
-    return smaller(a.slope, z.slope) - w * third > 0 ? RISES : UNKNOWN;
+    if (smaller(a.slope, z.slope) - w * third > 0) {
+        return RISES;
+    }
+    if (smaller(a.second, z.second) - w * f->fourth > 0) { /* below its chord: one root at most from g < 0 */
+        return z.g <= f->noise ? NO_CROSSING : a.g < 0 ? RISES : UNKNOWN;
+    }
+    if (larger(a.second, z.second) + w * f->fourth < 0) {
+        return !(a.slope > 0) ? NO_CROSSING : z.slope < 0 ? BENDS : RISES;
+    }
+    return UNKNOWN;
+}
+
+/* Where g is below its tangents, between a, where it rises, and *z, where it falls: whether it comes above its noise,
+ * by a tangent near its top.  Newton's method on its slope, from the chord of that.  RISES: *z is moved there. */
+static int look_at_top(const beyond *f, point a, point *z, int *splits)
+{
+    const real from = a.s, to = z->s;
+    point b = *z;
+    real s = a.s + (b.s - a.s) * (a.slope / (a.slope - b.slope));
+    int i;
+    for (i = 0; i < 8 && has_look(splits); i++) {
+        const point p = point_of(f, s);
+        if (p.g > f->noise) {
+            *z = p;
+            return RISES;
+        }
+        if (p.g + magnitude(p.slope) * larger(p.s - from, to - p.s) <= f->noise) {
+            return NO_CROSSING;
+        }
+        *(p.slope > 0 ? &a : &b) = p;
+        s = p.s - p.slope / p.second;
+        s = s > a.s && s < b.s ? s : (a.s + b.s) / 2;
+    }
+    return UNKNOWN;
 }
 
 /* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is
@@ -221,6 +319,7 @@ static real first_root(const beyond *f, real end, int *splits)
 {
     const real shortest = SHORT; /* what g does in less is below its noise */
     real width = end;
+    int first = 1;
     point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
     if (f->coefficient[0] + f->reach <= f->noise) {
         return -1;
@@ -231,18 +330,18 @@ static real first_root(const beyond *f, real end, int *splits)
     a.second = 2 * f->coefficient[2];
     a.third = 6 * f->coefficient[3];
     inside = a;
-    while (a.s < end) {
-        const point z = point_of(f, a.s + width < end ? a.s + width : end);
-        const int known = between(f, a, z);
+    for (; a.s < end && (first || has_look(splits)); first = 0) {
+        point z = point_of(f, a.s + width < end ? a.s + width : end);
+        int known = between(f, a, z);
+        if (known == BENDS) {
+            known = look_at_top(f, a, &z, splits);
+        }
+        if (known != NO_CROSSING && z.g > f->noise && (known != UNKNOWN || width <= shortest)) {
+            return inside.g < 0 ? root_between(f, inside, z, splits) : inside.s;
+        }
         if (known == UNKNOWN && width > shortest) {
-            if (--*splits < 0) {
-                return -1;
-            }
             width /= 2;
             continue;
-        }
-        if (known != NO_CROSSING && z.g > f->noise) {
-            return inside.g < 0 ? root_between(f, inside, z) : inside.s;
         }
         if (z.g < 0 || inside.g >= 0) {
             inside = z;

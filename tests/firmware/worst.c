@@ -50,9 +50,85 @@ static uint32_t ticks_of(void (*volatile f)(void *, const real *))
     return (before - SYSTICK[2]) & 0xFFFFFF;
 }
 
+/* The next step's instructions, in ticks */
+static uint32_t next_step(void)
+{
+    const uint32_t spent = ticks_of(MODEL.step);
+    int i;
+    for (i = 0; i < INPUTS; i++)
+        inputs[i] = any_size(3);
+    return spent - ticks_of(nothing);
+}
+
+#ifdef SPECIAL
+/* Places of events, from which starts are found that are the slowest: one entry after the other is moved a little or
+ * far, to 0 or to such a place, and what takes no less time is kept. */
+static const real special[] = { SPECIAL };
+enum { TRIES = 3000, CLIMBS = 4, AHEAD = 2, SPECIALS = sizeof special / sizeof *special };
+
+static void change(real *entry)
+{
+    const uint32_t way = draw() % 8;
+    const real small = any_size(0) / (real)((uint64_t)1 << draw() % 50);
+    if (way < 3)
+        *entry += small;
+    else if (way < 6)
+        *entry *= 1 + small;
+    else if (way == 6)
+        *entry = draw() % 2 ? 0 : any_size(4);
+    else
+        *entry = special[draw() % SPECIALS] * (draw() % 2 ? 1 : 1 + small);
+}
+
+static uint32_t most_from(real t)
+{
+    uint32_t most = 0;
+    int k;
+    MODEL.init(state);
+    MODEL.set(state, t, y);
+    for (k = 0; k < AHEAD; k++) {
+        const uint32_t spent = next_step();
+        most = spent > most ? spent : most;
+    }
+    return most;
+}
+
+static uint32_t climbed(void)
+{
+    uint32_t best = 0;
+    int climb, i, j;
+    for (climb = 0; climb < CLIMBS; climb++) {
+        real kept[MOST], t = 0;
+        uint32_t top = 0;
+        for (i = 0; i < MODEL.states; i++)
+            y[i] = kept[i] = any_size(0);
+        for (j = 0; j < TRIES; j++) {
+            const real then = draw() % 8 ? t : (real)(draw() % 100000) / 7000;
+            uint32_t spent;
+            for (i = (int)(draw() % 3); i >= 0; i--)
+                change(&y[draw() % (uint32_t)MODEL.states]);
+            spent = most_from(then);
+            if (spent >= top) {
+                top = spent;
+                t = then;
+            }
+            for (i = 0; i < MODEL.states; i++)
+                *(spent >= top ? &kept[i] : &y[i]) = spent >= top ? y[i] : kept[i];
+        }
+        best = top > best ? top : best;
+    }
+    return best;
+}
+#else
+static uint32_t climbed(void)
+{
+    return 0;
+}
+#endif
+
 int main(void)
 {
-    uint32_t most = 0, calls = 0;
+    uint32_t most = 0, calls = 0, far;
     uint64_t total = 0;
     int i, j, k;
     if (MODEL.size > sizeof state)
@@ -66,18 +142,16 @@ int main(void)
             y[i] = any_size(j % 4 ? 12 * (j % 4) : 0);
         MODEL.set(state, (real)(draw() % 100000) / 7, y);
         for (k = 0; k < STEPS; k++) {
-            uint32_t spent;
-            for (i = 0; i < INPUTS; i++)
-                inputs[i] = any_size(3);
-            spent = ticks_of(MODEL.step) - ticks_of(nothing);
+            const uint32_t spent = next_step();
             most = spent > most ? spent : most;
             total += spent;
             calls++;
         }
     }
+    far = climbed();
     put_count((uint32_t)(total / calls));
     put(" ");
-    put_count(most);
+    put_count(far > most ? far : most);
     put(" ");
     put_count(COUNTED_STEP_MAX);
     put("\n");

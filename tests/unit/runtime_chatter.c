@@ -98,7 +98,7 @@ void bounds_hold(void **state)
     steps(s, 3);
     assert_int_equal(pl_not_finite(s->x, 5), 0);
     s->m.max_events = EVENTS;
-    s->m.max_splits = 3;
+    s->m.max_splits = 1;
     start(s, almost);
     steps(s, 3);
     assert_int_equal(s->c.status, PL_TOO_MANY_EVENTS);
