@@ -5,14 +5,14 @@
  *
  * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
  * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations.  contacts: impacts, as
- * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events.
+ * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events, most.
  * instant: a state and what stands of it, with time [s] after the start of the step, and chain.  The enclosed run of
  * the generator (gen/step/struck.c) goes by it, too, with limits of its own, and names of roots.h. */
 
 /* How many impacts there may be at one instant before they are ended, and how many more before they are ended again;
- * how many are listed; how many events there may be in a step; how often speeds are taken from what comes to rest; how
+ * how many are listed; how often speeds are taken from what comes to rest; how
  * many places of the list are left for what comes to rest */
-enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_IN_STEP = 1 << 16, MOST_SWEEPS = 1000, LAST = 6 };
+enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_SWEEPS = 1000, LAST = 6 };
 #ifndef LISTED_AT_ONCE
 #define LISTED_AT_ONCE 12
 #endif
@@ -137,9 +137,9 @@ static void go_on(pl_chain *chain, real time, real span)
 }
 
 /* One more event; 0: there have been too many in this step. */
-static int has_time(pl_chain *chain)
+static int has_time(const contacts *m, pl_chain *chain)
 {
-    chain->full = ++chain->all > MOST_IN_STEP;
+    chain->full = ++chain->all > m->most;
     return !chain->full;
 }
 
@@ -165,7 +165,7 @@ static int has_room(const contacts *m, instant *at, int k)
         chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, expression, breakpoint,
                                   m->impact[k].upward);
     }
-    if (!chain->full && !has_time(chain)) {
+    if (!chain->full && !has_time(m, chain)) {
         say(at, PL_TOO_MANY_EVENTS);
     }
     return !chain->full;

@@ -231,7 +231,7 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
     at->before = at->c->region;
     VARIED(meet_guard(m, at, e->guard);)
     if (g->impact < 0) {
-        chain->full = !has_time(chain) || !has_listed(m, at, rest >= 0 && m->impact[rest].restitution < 1, at->time,
+        chain->full = !has_time(m, chain) || !has_listed(m, at, rest >= 0 && m->impact[rest].restitution < 1, at->time,
                                                       g->expression, g->breakpoint, g->upward);
         say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
     }

@@ -195,7 +195,7 @@ typedef struct pl_switching {
     const PL_REAL *chord_error, *cubic_error;
     /* degree of Taylor polynomials of e^{A tau} on 0 .. d, >= 3: as for pl_series, lower where |pole| d is small */
     int degree;
-    int max_events, max_splits; /* bounds per step: crossings; halvings of an interval in the search */
+    int max_events, max_splits; /* bounds per step: crossings; looks of the search at a polynomial */
     pl_cached *cached; /* NULL: all matrices are there; else `matrix` is not read */
 } pl_switching;
 
@@ -326,7 +326,7 @@ typedef struct pl_events {
     int conflicts;
     const pl_conflict *conflict;
     PL_REAL h;                /* step [s], the unit of time of c */
-    int max_events;
+    int max_events, most;     /* events in a step: listed, in all */
     /* of an entry of back and place_back that depends on the state its watch, -1: none; NULL: no entry does */
     const int *back_watch, *place_watch;
     const pl_moved *moved; /* NULL: no derivatives are among the states */
@@ -441,6 +441,7 @@ typedef struct pl_guards {
     const PL_REAL *speed, *back;
     int degree, max_events, max_splits; /* as for pl_switching */
     pl_cached *cached;
+    int most; /* events in a step, listed or not */
 } pl_guards;
 
 /* Sets *c to the region of x, as pl_switching_start; on a double breakpoint x is held if its conditions allow it. */

@@ -12,7 +12,7 @@
  *     PL_VECTOR, PL_WORK         words of x; numbers that the search works in
  *     PL_H, PL_DEGREE            [s]; of its Taylor polynomials
  *     PL_SWITCHING_FUNCTIONS, PL_IMPACTS that breakpoints divide; impacts
- *     PL_MAX_EVENTS, PL_MAX_SPLITS  in a step
+ *     PL_MAX_EVENTS, PL_MAX_SPLITS, PL_MOST_EVENTS  in a step: crossings listed, looks, with friction or impacts all
  *     PL_PLACE(i), PL_PART       where state i of the part is in s->y; which of s->contact is its: [1], or nothing
  *     PL_SEARCH, PL_START, PL_ADVANCE, PL_CHANGE  the search: its descriptor, its functions
  *     PL_GUARDS                  whether it is that of guards.c
@@ -79,7 +79,11 @@
 #define PL_BOUNDS PL(slopes)[0][0], PL(slopes)[0][0], PL(slopes)[0][0]
 #endif
 
+#if PL_GUARDS
+#define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS, (pl_cached *)0, PL_MOST_EVENTS
+#else
 #define PL_MOST PL_DEGREE, PL_MAX_EVENTS, PL_MAX_SPLITS, (pl_cached *)0
+#endif
 #define PL_TABLES PL_SIZE, PL_H, PL_SWITCHING_FUNCTIONS, PL_SWITCHING_TABLES, PL_MATRICES, PL_BOUNDS, PL_MOST
 
 #if PL_SLOTS > 0

@@ -203,6 +203,7 @@
 #undef PL_MODES
 #undef PL_MOMENTA
 #undef PL_MOST
+#undef PL_MOST_EVENTS
 #undef PL_MOVES
 #undef PL_NAME
 #undef PL_NEAR

@@ -44,7 +44,7 @@ static void emit_event_limit(const struct emitter *e)
 	for (int p = 0; p < e->step->regions.parts; p++)
 		parts += e->step->regions.part[p]->model->switching->functions > 0;
 	say(e, "enum { $N_MAX_EVENTS = %d };  /* crossings in a step%s */\n",
-	    parts ? parts * MAX_EVENTS : max_events(e->model), parts ? format(", %d of each part", MAX_EVENTS) : "");
+	    (parts ? parts : 1) * max_events(e->model), parts ? format(", %d of each part", max_events(e->model)) : "");
 }
 
 /* Whether the step stands before the tables: it does not read them by itself */

@@ -21,6 +21,7 @@ void unit_of_expansion(const struct model *model, mpq_ptr unit);
 
 enum { LEAST_ORDER = 4, MOST_ORDER = 30 };
 enum { LEAST_STAGES = 3, MOST_STAGES = 9 };
+void evaluate_events(void *context);                        /* of a building: the most in a step */
 void evaluate_truncation(void *context);                    /* of a building: order of a series, its most substeps */
 void evaluate_modes(void *context);                         /* likewise: the modes that are kept */
 int  whole_number(struct building *b, struct node *node, int low, int high, const char *what); /* else it is refused */

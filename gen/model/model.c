@@ -464,6 +464,8 @@ static void collect_model(struct building *b)
 	statement_guard(choose_scheme, b);
 	if (all)
 		statement_guard(evaluate_truncation, b);
+	if (all && b->spec->request.events)
+		statement_guard(evaluate_events, b);
 	if (all && (b->spec->modes.at.source || request->modes))
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */

@@ -56,6 +56,7 @@ struct model {
 	mpq_t *initial;             /* one per state */
 	mpq_t h;
 	enum scheme scheme;
+	int most_events;            /* in a step; 0: not given */
 	struct truncation truncation; /* of a scheme that expands or collocates; else all 0 */
 	struct operator_schedule schedule;
 	struct remainder remainder;

@@ -20,16 +20,16 @@ static const struct statement {
 	{ "input", read_input }, { "matrix", read_matrix_statement }, { "mass", read_mass }, { "spring", read_spring },
 	{ "damper", read_damper }, { "force", read_force }, { "operator", read_operator }, { "tunable", read_tunable },
 	{ "tolerance", read_tolerance }, { "substeps", read_substeps }, { "modes", read_modes }, { "use", read_part },
-	{ "regions", read_cached },
+	{ "regions", read_cached }, { "events", read_events },
 	{ "need", read_need }, { "budget", read_budget }, { "friction", read_friction },
 	{ "energy", read_energy }, { "dissipation", read_dissipation },
 	{ "constraint", read_constraint }, { "when", read_when }, { "stop", read_stop },
 	{ "range", read_range }, { "draw", read_draw }, { "sensitivity", read_sensitivity }
 };
 
-/* tolerance, substeps, regions, modes, use, need, budget, when, stop, range and sensitivity may be names of a spec's
- * own: in an equation an operator or a prime follows; a sign is that of a number where the line has no =; an = is no
- * equation where there is no such name. */
+/* tolerance, substeps, events, regions, modes, use, need, budget, when, stop, range and sensitivity may be names of a
+ * spec's own: in an equation an operator or a prime follows; a sign is that of a number where the line has no =; an =
+ * is no equation where there is no such name. */
 static bool opens_statement(const struct parser *p, const struct statement *statement, struct token token)
 {
 	const char *next = token.at.source->text + token.at.offset + token.length;

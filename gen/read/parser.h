@@ -99,6 +99,7 @@ void read_scheme(struct parser *p);
 void read_tolerance(struct parser *p);
 void read_substeps(struct parser *p);
 void read_cached(struct parser *p);
+void read_events(struct parser *p);
 void read_range(struct parser *p);
 struct mode_list take_modes(struct parser *p);
 void read_modes(struct parser *p);

@@ -293,6 +293,7 @@ struct requested_scheme {
 	 * a step may make; the most steps within one h. NULL: not given */
 	struct node *order, *over, *tolerance, *substeps;
 	struct node *cached;        /* matrices of regions that an instance keeps; NULL: not given */
+	struct node *events;        /* the most in a step; NULL: not given */
 	struct node *absolute;      /* behind the tolerance: what a step may add to any state; NULL: not given */
 	int absolutes;
 	struct state_bound *absolute_of;  /* the same of some states */

@@ -101,6 +101,20 @@ void read_cached(struct parser *p)
 	expect_end(p);
 }
 
+/* events: events at most expression a step */
+void read_events(struct parser *p)
+{
+	struct place at = last_token(p, strlen("events"));
+	if (p->own->request.events)
+		error(at, NULL, "the most events are given already");
+	expect_word(p, "at");
+	expect_word(p, "most");
+	p->own->request.events = read_expression(p);
+	expect_word(p, "a");
+	expect_word(p, "step");
+	expect_end(p);
+}
+
 /* expression { , expression } [ , ] [ without static ] */
 struct mode_list take_modes(struct parser *p)
 {

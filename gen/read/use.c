@@ -170,6 +170,7 @@ static const char *left_aside(const struct spec *own)
 			  { "tolerance", own->request.tolerance != NULL || own->request.absolutes > 0 },
 			  { "substeps", own->request.substeps != NULL },
 			  { "regions", own->request.cached != NULL },
+			  { "events", own->request.events != NULL },
 			  { "operator", own->operators.given },
 			  { "modes", own->modes.count > 0 },
 			  { "need", own->required.needs > 0 },

@@ -62,7 +62,7 @@ static long fast_path_multiplications(const struct step *step)
 	long moves = 6 * step->regions.event_check.degree * (size * size + size) + 12 * size * size;
 	return !step->regions.event_check.is_made                         ? 0
 	       : step->regions.event_check.fast_path
-		       ? size * size + MOST_EVENT_CHECKS * (bounds + moves)
+		       ? size * size + event_checks(step->model) * (bounds + moves)
 	       : has_events(step->model->switching) ? products_of_unmet(step)
 						    : size * size;
 }
@@ -192,12 +192,13 @@ static void text_intervals(FILE *to, const struct switching *s, int region)
 		s->region[region].system);
 }
 
-static void text_way(FILE *to, const struct event_check *check)
+static void text_way(FILE *to, const struct step *step)
 {
+	const struct event_check *check = &step->regions.event_check;
 	const char *clear = "A step that a bound shows to be free of events is one matrix product";
 	if (check->fast_path)
 		fprintf(to, "%s; up to %d crossings that are certain are computed by Taylor polynomials of degree %d; "
-			    "the search does all other steps.\n", clear, MOST_FAST_PATH, check->degree);
+			    "the search does all other steps.\n", clear, fast_path_events(step->model), check->degree);
 	else if (check->is_made)
 		fprintf(to, "%s; the search does all other steps.\n", clear);
 	else
@@ -236,7 +237,7 @@ static void text_of_one_part(FILE *to, const struct step *step)
 	text_impact_rules(to, model);
 	if (s->sharing)
 		fprintf(to, "Rigid-body modes: %d independent parts have their regions together.\n", s->sharing);
-	text_way(to, &step->regions.event_check);
+	text_way(to, step);
 }
 
 static void text_part(FILE *to, const struct step *full, int index)
@@ -276,7 +277,7 @@ static void text_parts(FILE *to, const struct step *step)
 	if (fast)
 		fprintf(to, "A step of a part that a bound shows to be free of events is one matrix product; up to %d "
 			    "crossings that are certain are computed by Taylor polynomials; the search does all other "
-			    "steps.\n", MOST_FAST_PATH);
+			    "steps.\n", fast_path_events(step->model));
 }
 
 void text_regions(FILE *to, const struct step *step)
@@ -320,8 +321,8 @@ void text_region_list(FILE *to, const struct step *step)
 	fprintf(to,
 		"Tables%s: %ld bytes. Per step%s at most %d crossings and %d splits; at most %ld multiplications%s.\n",
 		caches_regions(step->model) ? ", most of them in an instance" : "", bytes,
-		parts ? " of each part" : "", parts ? MAX_EVENTS : max_events(step->model),
-		parts ? MAX_SPLITS : max_splits(step->model), most, parts ? " of all" : "");
+		parts ? " of each part" : "", max_events(step->model),
+		max_splits(step->model), most, parts ? " of all" : "");
 }
 
 /* ---- JSON ---- */

@@ -1,13 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The most instructions that a step takes. Code without a branch that depends on the state takes the sum of what its
- * operations take at most; of a search, of a series that serves several steps and of Newton's method there is no such
- * sum. */
+ * operations take at most; a search that of its limits, each taken to the full; of a series that serves several steps
+ * and of Newton's method there is no such sum. */
 #include "cost.h"
 #include "model/capability.h"
 #include "model/checks.h"
+#include "model/contacts/contacts.h"
 #include "collect/collect.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
+#include "step/regions/guards.h"
+#include "step/regions/regions.h"
+#include "step/slopes.h"
 
 #include <math.h>
 #include <string.h>
@@ -23,12 +27,28 @@ static bool holds_longer(const struct linear *system)
 	return longer;
 }
 
+static const char *unbounded_search(const struct step *step)
+{
+	const struct switching *s = step->model->switching;
+	bool pieces = false;
+	for (int k = 0; k < step->branches; k++)
+		pieces = pieces || step->branch[k].halvings > 0;
+	return step->regions.parts	 ? "independent parts are searched one by one"
+	       : pieces			 ? "beside a fast pole a step goes in pieces, a smaller step in one"
+	       : caches_regions(step->model) ? "matrices of regions are made when they are met"
+	       : step->is.two_words	 ? "the search is in two words"
+	       : s->segments > 1	 ? "loads change their formula inside a step"
+	       : s->impacts > 1		 ? "several contacts come to rest by sweeps"
+					 : NULL;
+}
+
 const char *unbounded_text(const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
 	const struct model *model = step->model;
-	return !is_linear_alone(step)	     ? model->switching ? "events inside a step are searched"
-						       : "linear steps alone have one"
+	const char *search = model->switching ? unbounded_search(step) : NULL;
+	return search				     ? search
+	       : !is_linear_alone(step) && !model->switching ? "linear steps and those of regions alone have one"
 	       : system->segments > 1	     ? "loads change their formula inside a step"
 	       : model->written->ranges > 0  ? "states are compared with their ranges"
 	       : model->delays		     ? "the step of a core is taken in parts"
@@ -58,6 +78,51 @@ static struct parts parts_of(const struct step *step)
 	return p;
 }
 
+/* ---- a search ---- */
+
+/* Of a step with events, by the limits of the runtime: functions of loads; the step without an event; moves by Taylor
+ * polynomials from event to event, their terms, entries of A and of x; terms of switching functions or guards; looks at
+ * these for roots; moves before the search; rows over x; what rests, tried in all combinations; products with matrices;
+ * impacts; a step */
+enum { FORCED, CLEAR, MOVED, SUMMED, FOLLOWED, LOOKED, CHECKED, ROWS, RESTING, SQUARES, IMPACTS, STEP, SEARCH };
+
+/* Entries that are not 0, of the linear system that has most */
+static int most_entries(const struct step *step)
+{
+	int most = 0;
+	for (int k = 0; k < step->branches; k++) {
+		SCRATCH double *A = slopes_of(step, k);
+		int count = 0;
+		for (int i = 0; i < step->layout.size * step->layout.size; i++)
+			count += A[i] != 0;
+		most = count > most ? count : most;
+	}
+	return most;
+}
+
+static void search_of(const struct step *step, bool single, double part[SEARCH])
+{
+	enum { MOST_RESTING = 6 };      /* MOST of impacts.h */
+	const struct switching *s = step->model->switching;
+	const struct program *p = step->program;
+	const bool guards = has_events(s), few = step->regions.event_check.fast_path && !single;
+	const double size = step->layout.size, degree = step->series.degree, entries = most_entries(step);
+	const double events = max_events(step->model), moves = events + 3, rows = s->functions * (guards ? 2 : 1);
+	const struct parts parts = parts_of(step);
+	part[FORCED] = parts.forcings + parts.growths;
+	part[CLEAR] = p->multiplications + p->additions;
+	part[MOVED] = moves * degree * entries;
+	part[SUMMED] = moves * degree * size;
+	part[FOLLOWED] = moves * rows * degree;
+	part[LOOKED] = (max_splits(step->model) + moves * rows) * degree;
+	part[CHECKED] = few ? event_checks(step->model) * degree * entries : 0;
+	part[ROWS] = (moves + s->impacts * events) * rows * size;
+	part[RESTING] = guards ? (events + 1) * pow(3, fmin(s->functions, MOST_RESTING)) * size * size : 0;
+	part[SQUARES] = moves * size * size;
+	part[IMPACTS] = (events + 1) * s->impacts;
+	part[STEP] = 1;
+}
+
 /* ---- what each part takes ---- */
 
 enum { PLAIN = 9, LOOPS = 3 };
@@ -83,6 +148,19 @@ static const struct bound bounds[] = {
 	  { { 4.2, 30.37, 262.9 }, { 4.75, 36.99, 68.86 } } }
 };
 
+/* The same of searches, to the longest steps beside breakpoints, grazing, in chains of impacts of 12 models: with
+ * friction and impacts as often as much as on a Cortex-M4 in float, in double, in float */
+static const double searches[][2][SEARCH] = {
+	{ { 29155, 785, 952, 1428, 850, 2142, 714, 3570, 0, 178, 0, 1020 },
+	  { 3000, 350, 315, 374, 300, 250, 0, 1400, 0, 70, 0, 500 } },
+	{ { 8575, 231, 280, 420, 250, 630, 210, 1050, 0, 52.5, 0, 300 },
+	  { 805, 7, 10.1, 29.7, 20, 9, 0, 105, 0, 21, 0, 100 } },
+	{ { 1680, 4.2, 5.4, 26.7, 18, 8, 14, 105, 0, 21, 0, 100 },
+	  { 829, 7.2, 10.4, 30.6, 20.6, 9.3, 0, 108, 0, 21.6, 0, 103 } }
+};
+static const double contacts[SEARCH] = { 230, 7, 17.5, 28.7, 70, 9, 0, 105, 3.5, 21, 4023, 100 };
+static const double contacts_take[][2] = { { 42, 15.5 }, { 13, 1 }, { 1.4, 1.03 } };
+
 const char *worst_target(int target)
 {
 	return target < (int)(sizeof bounds / sizeof *bounds) ? bounds[target].target : NULL;
@@ -104,8 +182,19 @@ static double sum_of(int count, const double *each, const double *times)
 	return ceil(sum);
 }
 
+static double worst_of_search(const struct step *step, int target, bool single)
+{
+	double part[SEARCH];
+	search_of(step, single, part);
+	return has_events(step->model->switching)
+		       ? ceil(contacts_take[target][single] * sum_of(SEARCH, contacts, part))
+		       : sum_of(SEARCH, searches[target][single], part);
+}
+
 double worst_of_step(const struct step *step, int target, bool single)
 {
+	if (step->model->switching)
+		return worst_of_search(step, target, single);
 	const struct parts p = parts_of(step);
 	const double more = fmax(p.multiplications - 30, 0);
 	const double plain[PLAIN] = { p.multiplications, p.additions, p.forcings, p.growths, p.states, p.flushed,
@@ -127,16 +216,36 @@ const char *worst_text(const struct step *step)
 
 /* ---- budget N instructions on TARGET for the worst step ---- */
 
+/* As many events as the budget has room for; NULL: not for one */
+static const char *fewer_events_text(const struct step *step, int target, double budget)
+{
+	struct model model = *step->model;
+	struct step fewer = *step;
+	fewer.model = &model;
+	for (int n = max_events(step->model) - 1; n > 0 && model.switching; n = n > 8 ? n / 2 : n - 1) {
+		model.most_events = n;
+		const double worst = worst_of_step(&fewer, target, model.request.single);
+		if (worst <= budget)
+			return format("with 'events at most %d a step' it takes at most %.0f", n, worst);
+	}
+	return NULL;
+}
+
 /* What would take less, of the same step */
 static const char *cheaper_text(const struct step *step, int target, double budget)
 {
 	const bool single = step->model->request.single;
+	const char *fewer = fewer_events_text(step, target, budget);
+	if (fewer)
+		return fewer;
 	if (!single && worst_of_step(step, target, true) <= budget)
 		return format("--real float takes at most %.0f", worst_of_step(step, target, true));
 	for (int t = 0; worst_target(t); t++)
 		if (worst_of_step(step, t, single) <= budget)
 			return format("%s takes at most %.0f", worst_target(t), worst_of_step(step, t, single));
-	return "fewer modes take less (modes N), and so does a model of fewer coordinates";
+	return step->model->switching
+		       ? "a smaller step takes less, for its polynomials have fewer terms, and so do fewer coordinates"
+		       : "fewer modes take less (modes N), and so does a model of fewer coordinates";
 }
 
 void check_worst(const struct step *step)
@@ -144,6 +253,9 @@ void check_worst(const struct step *step)
 	const struct budget *budget = &step->model->spec->required.budget;
 	struct collector collector = { .scheme = "exact" };
 	RATIONAL instructions = ZERO;
+	if (step->model->most_events && !step->model->switching && !step->taylor.switching)
+		say_warning(step->model->spec->request.events->start, NULL,
+			    "the most events have no effect: there are none");
 	if (!budget->worst)
 		return;
 	const int target = worst_target_named(budget->target.name);

@@ -64,7 +64,7 @@ static uint32_t next_step(void)
 /* Places of events, from which starts are found that are the slowest: one entry after the other is moved a little or
  * far, to 0 or to such a place, and what takes no less time is kept. */
 static const real special[] = { SPECIAL };
-enum { TRIES = 3000, CLIMBS = 4, AHEAD = 2, SPECIALS = sizeof special / sizeof *special };
+enum { TRIES = 1000, CLIMBS = 4, AHEAD = 2, SPECIALS = sizeof special / sizeof *special };
 
 static void change(real *entry)
 {

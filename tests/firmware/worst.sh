@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # worst.sh PLGEN SOURCE_ROOT: the longest step that a search finds on emulated boards (worst.c), against the bound that
-# --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it. The bound was not fitted
-# to these models, but for the long chain. With --table: the table of doc/firmware.md instead.
+# --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it; of steps with events above 0.3, since not
+# every model has as many as it may, or roots that take all looks. The bound was not fitted to these models, but for the
+# long chain. With --table: the table of doc/firmware.md instead.
 set -u
 table=
 [ "$1" != --table ] || { table=1; shift; }
@@ -20,8 +21,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 cd "$work" || exit 99
 
-# What the boards share, once for each; of the runtime what linear steps call
-calls=$(ls "$root"/runtime/*.c | grep -Ev '/(crossings|guards|event|region|retune|peak)')
+# What the boards share, once for each; of the runtime what linear steps and those of regions call
+calls=$(ls "$root"/runtime/*.c | grep -Ev '_compensated|_d[.]|_df[.]|/(event|region|retune|peak|series)')
 prepare() {
     for b; do
         board "$b"
@@ -43,8 +44,9 @@ chain() {
         print "step 0.05" }'
 }
 
-# search BOARD REAL SPEC [OPTION ...]: usual, largest, bound, stack. The clock of -icount shift=10 has 1024 ns an
-# instruction, that of SysTick 40 ns a tick, of the M0's board 62.5.
+# search BOARD REAL SPEC [OPTION ...]: usual, largest, bound, stack. The clock of -icount shift=6 has 64 ns an
+# instruction, that of SysTick 40 ns a tick, of the M0's board 62.5; it counts to 2^24. Where there are events, starts
+# are sought beside breakpoints.
 search() {
     b=$1
     real=$2
@@ -54,16 +56,19 @@ search() {
     target=cortex-$(echo "${b%f}")
     option=-DREAL_DOUBLE
     [ "$real" = double ] || option=-DREAL_FLOAT
+    special=$("$plgen" --explain "$@" "$spec" 2>/dev/null |
+        awk '/breakpoints/ { sub(/.*breakpoints /, ""); gsub(/[^-0-9.e,]/, ""); printf "%s,", $0 }')
     # shellcheck disable=SC2086
     "$plgen" --real "$real" --prefix counted "$@" -o model.c "$spec" 2>log &&
         "$plgen" --real "$real" --prefix counted "$@" --explain=json "$spec" >told 2>>log &&
         $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -include model.h \
+            ${special:+-DSPECIAL=$special-1} \
             -fcallgraph-info=su -c "$firmware/worst.c" model.c >>log 2>&1 &&
         link image.elf model.o worst.o "$b/runtime.a" -lm >>log 2>&1 &&
-        emulate 300 image.elf -icount shift=10,align=off,sleep=off >out 2>>log
+        emulate 300 image.elf -icount shift=6,align=off,sleep=off >out 2>>log
     stack=$(awk -f "$firmware/stack.awk" model.ci "$b"/*.ci 2>/dev/null | awk '$1 == "counted_step" { print $3 }')
     tail -n 1 out | cat - told | awk -v target="\"$target\":" -v stack="${stack:-0}" -v m0="$b" '
-        NR == 1 { scale = m0 == "m0" ? 16.384 : 25.6; usual = $1 / scale; largest = $2 / scale; header = $3 }
+        NR == 1 { scale = m0 == "m0" ? 1.024 : 1.6; usual = $1 / scale; largest = $2 / scale; header = $3 }
         /"worst"/ { gsub(/[{},]/, " "); for (i = 1; i < NF; i++) if ($i == target) bound = $(i + 1) }
         END { printf "%.0f %.0f %d %d %d\n", usual, largest, bound, header, stack }'
 }
@@ -76,7 +81,7 @@ found() {
     # shellcheck disable=SC2046
     search "$@" >line
     read -r usual largest bound header _ <line
-    [ "$largest" -le "$bound" ] && [ $((largest * 10)) -ge $((bound * 7)) ] && [ "$bound" = "$header" ]
+    [ "$largest" -le "$bound" ] && [ $((largest * 10)) -ge $((bound * ${least:-7})) ] && [ "$bound" = "$header" ]
     result $? "$name, $1, $2: $usual usual, $largest at most, bound $bound, in the header $header"
 }
 
@@ -124,5 +129,27 @@ m4f float fourteen
 m7 double six
 m7 double loads --form direct
 m7 float fourteen
+END
+least=3
+cat >gap.spec <<'END'
+model gap
+coord x, z
+init x = 0.4, z' = 1
+x'' + 0.1*x' + 9*x - 3*z + 20*max(x - z - 0.2, 0) = 0
+z'' + 0.1*z' + 8*z - 3*x = cos(3*t)
+step 0.05
+events at most 2 a step
+END
+sed "s/20.max(x - z - 0.2, 0)/friction(x', 0.4)/" gap.spec >rub.spec
+sed 's/ + 20.max(x - z - 0.2, 0)//; $a stop between x, ground at 0.3 restitution 0.6' gap.spec >bounce.spec
+while read -r b real spec; do
+    found "$spec" "$b" "$real" "$spec.spec"
+done <<'END'
+m4f float gap
+m4f double gap
+m7 double rub
+m4f float rub
+m0 float bounce
+m7 double bounce
 END
 tap_end

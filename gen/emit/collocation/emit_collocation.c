@@ -240,7 +240,7 @@ static void emit_switching_limits(const struct emitter *e)
 static void emit_passage_limits(const struct emitter *e)
 {
 	emit_switching_macros(e);
-	say_macro(e, "MAX_SPLITS", integer_text(meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS));
+	say_macro(e, "MAX_SPLITS", integer_text(max_splits(e->model)));
 	say_macro(e, "WATCH_READS", integer_text(watch_reads_known(e)));
 	if (!meets_contacts(e))
 		return;

@@ -6,6 +6,7 @@
 #include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
+#include "step/regions/guards.h"
 
 #include <string.h>
 
@@ -117,8 +118,8 @@ static void emit_events(const struct emitter *e, const char *name, const char *s
 	say(e, "static const pl_events $n_%s = {\n"
 	       "    &$n_%s, $N_STATES, $n_%s, %d, $n_event_hold, $n_event_back[0], %d, $n_event_impacts,\n"
 	       "    $n_event_place[0],\n"
-	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS,\n",
-	    name, switching, watch, c->holds, c->series_impacts, c->conflicts);
+	       "    $n_event_jumps, $n_event_after, %d, $n_event_conflict, $N_H, $N_MAX_EVENTS, %d,\n",
+	    name, switching, watch, c->holds, c->series_impacts, c->conflicts, most_in_step(e->model));
 	say(e, "    %s, %s\n};\n", c->moves ? spell(e, "$n_event_back_watch, $n_event_place_watch") : "NULL, NULL",
 	    c->columns > 0 ? spell(e, "&$n_moved") : "NULL");
 }

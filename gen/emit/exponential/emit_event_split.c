@@ -119,7 +119,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "CONTACTS", meets_contacts(e) }, { "INPUTS", e->system->inputs },
 		   { "SEGMENTS", e->system->segments },
 		   { "CHOICES", has_choices(by_series(e, e->step->event_split->event_check)) },
-		   { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
+		   { "MAX_SPLITS", max_splits(e->model) },
 		   { "FAST_PATH", event_split_of(e)->certain < 1 }, { "IN_MODES", e->step->normal != NULL });
 	if (e->step->normal)
 		emit_mode_sizes(e);

@@ -3,6 +3,7 @@
  * switching functions, their bounds, x over the whole step and over a part of it. */
 #include "inner.h"
 #include "emit/text.h"
+#include "step/regions/guards.h"
 
 #include <string.h>
 
@@ -212,8 +213,8 @@ static void emit_size_of_x(const struct emitter *e, const struct pieces *p)
 void emit_crossing_macros(const struct emitter *e, const struct pieces *p)
 {
 	const char *step = any_pieces(e) ? "step_" : "";
-	say_macro(e, "FEW", integer_text(MOST_FAST_PATH));
-	say_macro(e, "EVENT_CHECKS", integer_text(MOST_EVENT_CHECKS));
+	say_macro(e, "FEW", integer_text(fast_path_events(e->model)));
+	say_macro(e, "EVENT_CHECKS", integer_text(event_checks(e->model)));
 	say_macro(e, "LARGE", shortest(p->large));
 	say_macro(e, "OPEN_END", shortest(OPEN_END));
 	say_macro(e, "MOVES", integer_text(e->step->regions.event_check.degree));

@@ -4,6 +4,7 @@
 #include "inner.h"
 #include "emit/steps.h"
 #include "model/regions/regions.h"
+#include "step/regions/guards.h"
 
 #include <string.h>
 
@@ -188,7 +189,7 @@ void emit_part_members(const struct emitter *e)
 {
 	say(e, "    pl_contact contact[%d];   /* of each part: region, crossings */\n"
 	       "    pl_crossing crossing[%d][%d];  /* of each, in the last step */\n",
-	    switched_parts(e), switched_parts(e), MAX_EVENTS);
+	    switched_parts(e), switched_parts(e), max_events(e->model));
 }
 
 static void emit_place_of_part(const struct emitter *part)
@@ -294,7 +295,8 @@ const char *start_of_search(const struct emitter *part)
 static void declare_contact(const struct emitter *part)
 {
 	say(part, "    pl_contact contact = %s;\n"
-		  "    pl_crossing crossing[%d];\n", start_of_search(part), is_linear_part(part) ? 1 : MAX_EVENTS);
+		  "    pl_crossing crossing[%d];\n", start_of_search(part),
+	    is_linear_part(part) ? 1 : max_events(part->model));
 }
 
 /* By the pieces of the search, which has nothing to look for */

@@ -304,8 +304,9 @@ static void emit_search_sizes(const struct emitter *e)
 		{ "COMPENSATED", is_compensated(e) }, { "SIZE", e->step->layout.size }, { "VECTOR", size_of_vector(e) },
 		{ "DEGREE", e->step->series.degree }, { "SWITCHING_FUNCTIONS", s->functions },
 		{ "IMPACTS", s->impacts },
-		{ "MAX_SPLITS", has_guards(e) ? max_splits(e->model) : switches ? MAX_SPLITS : 0 },
-		{ "GUARDS", has_guards(e) }, { "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
+		{ "MAX_SPLITS", switches || has_guards(e) ? max_splits(e->model) : 0 },
+		{ "MOST_EVENTS", most_in_step(e->model) }, { "GUARDS", has_guards(e) },
+		{ "OWN", e->model->params.retuned != NULL }, { "SEGMENTS", s->segments },
 		{ "REGIONS", region_numbers(s) }, { "LOST", any_lost(e) },
 		{ "ALONE", !e->step->shown->regions.parts && switches },
 		{ "BOUNCES", has_bounces(e->model) }, { "EVENT_FREE", e->step->regions.event_check.is_made },
@@ -494,7 +495,7 @@ static void note_clear_steps(const struct emitter *e, const char *function, cons
 		note(e, "2. $o_cross: up to %d crossings by the Taylor polynomial of x in time, of degree %d "
 			"($o_move). A root of e - b is taken where bounds of the third and fourth derivative ($o_jerk, "
 			"$o_cubic_error) and of rounding ($o_slack) show that it is the first; else nothing is "
-			"changed, and 3 follows.", MOST_FAST_PATH, e->step->regions.event_check.degree);
+			"changed, and 3 follows.", fast_path_events(e->model), e->step->regions.event_check.degree);
 }
 
 static void note_search(const struct emitter *e, const char *function, const char *of)

@@ -255,7 +255,7 @@ static void emit_algorithm(const struct emitter *e)
 		   { "KINDS", shares_kinds(e) }, { "FLOORS", has_floors(e) }, { "OVER", spans_steps(e) ? t->over : 1 },
 		   { "PARTS", has_offset(e) }, { "STRAIGHT", is_straight(e) },
 		   { "WRITTEN_OUT", is_written_out(e, x->order) }, { "SERVES", most_served(e) },
-		   { "TRIES", t->substeps }, { "MAX_SPLITS", meets_contacts(e) ? max_splits(e->model) : MAX_SPLITS },
+		   { "TRIES", t->substeps }, { "MAX_SPLITS", max_splits(e->model) },
 		   { "UNRESOLVED", t->adaptive && has_unresolved(e) },
 		   { "SLOPES", t->adaptive && e->step->taylor.slopes },
 		   { "AT", e->step->series.emitted }, { "CONSERVES", holds_energy(e) },

@@ -105,6 +105,12 @@ static int steps_of_expansion(struct building *b)
 	return whole_number(b, over, 1, MOST_OVER, "the number of steps of one expansion");
 }
 
+void evaluate_events(void *context)
+{
+	struct building *b = context;
+	b->model->most_events = whole_number(b, b->spec->request.events, 1, LIMIT_EVENTS, "the most events");
+}
+
 /* The order of a series, given or from its tolerance; the most steps within one h */
 void evaluate_truncation(void *context)
 {

@@ -35,7 +35,7 @@ struct bound {                      /* an impact in this segment of time */
 
 struct law {
 	const struct switching *s;
-	int segment, impacts, max_events;
+	int segment, impacts, max_events, most;
 	bool solution;
 	double h, calm, brief, span;
 	struct bound *impact;
@@ -116,8 +116,9 @@ static const struct law *law_of(struct trajectory *t)
 	if (!t->law)
 		t->chain = no_impact(mpq_get_d(t->full->h));
 	struct law *m = NEW(struct law);
-	*m = (struct law){ .s = t->s, .segment = t->when.segment, .impacts = t->s->impacts, .max_events = INT_MAX / 4,
-			   .solution = solution, .h = mpq_get_d(t->full->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
+	*m = (struct law){ .s = t->s, .segment = t->when.segment, .impacts = t->s->impacts,
+			   .max_events = INT_MAX / 4, .most = MOST_IN_STEP, .solution = solution,
+			   .h = mpq_get_d(t->full->h), .calm = coarse ? 0x1p-20 : 0x1p-48,
 			   .brief = coarse ? 0x1p-10 : 0x1p-23, .span = coarse ? 0x1p-8 : 0x1p-10 };
 	m->impact = ARRAY(struct bound, (size_t)m->impacts + 1);
 	for (int k = 0; k < m->impacts; k++)

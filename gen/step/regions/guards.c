@@ -274,10 +274,27 @@ static int bounces_in_step(const struct model *model)
 
 int max_events(const struct model *model)
 {
-	return MAX_EVENTS + bounces_in_step(model);
+	return model->most_events ? model->most_events : MAX_EVENTS + bounces_in_step(model);
+}
+
+int fast_path_events(const struct model *model)
+{
+	return max_events(model) < MOST_FAST_PATH ? max_events(model) : MOST_FAST_PATH;
+}
+
+int event_checks(const struct model *model)
+{
+	const int most = 2 * model->most_events + 2;
+	return model->most_events && most < MOST_EVENT_CHECKS ? most : MOST_EVENT_CHECKS;
+}
+
+int most_in_step(const struct model *model)
+{
+	return model->most_events ? model->most_events : MOST_IN_STEP;
 }
 
 int max_splits(const struct model *model)
 {
-	return MAX_SPLITS + 16 * bounces_in_step(model);
+	return model->most_events ? LOOKS_OF_STEP + LOOKS_OF_EVENT * model->most_events
+				  : MAX_SPLITS + 32 * bounces_in_step(model);
 }

@@ -60,6 +60,9 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);
+int fast_path_events(const struct model *model);             /* those that few.h follows */
+int event_checks(const struct model *model);                 /* parts of a step that few.h looks at */
+int most_in_step(const struct model *model);                 /* listed or not, with friction and impacts */
 /* what friction carries that outputs read: regions x felts x size */
 double *friction_forces_of(const struct step *step);
 
