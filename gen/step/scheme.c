@@ -368,6 +368,36 @@ static void check_event_splits(const struct model *model)
 		refuse(CAN_SPLIT, model, model->request.at.scheme);
 }
 
+/* States of the largest block of damped equations that act on each other */
+static int most_coupled(const struct linear *system)
+{
+	const int n = system->n;
+	SCRATCH bool *filled = ARRAY(bool, (size_t)n * (size_t)n), *damped = ARRAY(bool, (size_t)n + 1);
+	int *block = ARRAY(int, 2 * (size_t)n), *states = ARRAY(int, (size_t)n + 1), most = 0;
+	for (int i = 0; i < n * n; i++)
+		filled[i] = mpq_sgn(system->M[i]) || mpq_sgn(system->C[i]) || mpq_sgn(system->K[i]);
+	const int blocks = matrix_blocks(n, filled, block);
+	for (int i = 0; i < n * n; i++)
+		damped[block[n + i % n]] |= mpq_sgn(system->C[i]) != 0;
+	for (int i = 0; i < n; i++)
+		states[block[n + i]] += mpq_sgn(system->M[i * n + i]) != 0 ? 2 : 0;
+	for (int k = 0; k < blocks; k++)
+		most = damped[k] && states[k] > most ? states[k] : most;
+	return most;
+}
+
+/* Before B(s), which takes long where e^{A h} then finds no room: that of 320 states takes 430 MB */
+static void check_coupled(const struct model *model)
+{
+	enum { MOST = 384 };
+	const int coupled = flow_of(model) == FLOW_LINEAR ? most_coupled(&model->system) : 0;
+	if (coupled > MOST)
+		error(model->spec->name_at,
+		      "declare the outputs, and 'modes N' or a 'need' keeps the modes that they take",
+		      "%d states of damped coordinates act on each other: e^{A h} of more than %d takes more memory "
+		      "than the limit of %d bytes", coupled, MOST, LIMIT_BYTES);
+}
+
 static void build(void *context)
 {
 	struct step *step = context;
@@ -375,6 +405,7 @@ static void build(void *context)
 	check_event_splits(model);
 	step->is = descriptor_of(model);
 	step->form = FORM_DIRECT;
+	check_coupled(model);
 	step->written = resolvent_of_written(model);
 	check_pole_size(model, step->written);
 	check_holds(step);
