@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* runtime/crossings.c against closed forms and published values; starts on breakpoints, crossings that are easily
  * missed. */
+#include "roots.h"
 #include "runtime_switched.h"
 
 /* ---- closed forms ---- */
@@ -497,6 +498,26 @@ static void input_jumps(void **state)
     free_model(s);
 }
 
+/* Roots of random polynomials below 0 at the start: first ones, by values at many places */
+static void tops_are_seen(void **state)
+{
+    real e[7], c[7], one[1] = {1};
+    int t, i, k;
+    (void)state;
+    for (t = 0; t < 20000; t++) {
+        beyond f = {6, c, 0, 0, 0, 0};
+        int splits = 100;
+        real root;
+        for (k = 0; k < 7; k++)
+            e[k] = (real)(k ? uniform(-1, 1) / (1 << k) : uniform(-0.05, 0));
+        if (!look_beyond(&f, e, 1, 0, sizes(1, one, one)))
+            continue;
+        root = first_root(&f, 1, &splits);
+        for (i = 1; i < 50; i++)
+            assert_true(point_of(&f, (root < 0 ? 1 : root) * (real)i / 50).g < 16 * f.noise + 4 * REAL_EPSILON);
+    }
+}
+
 ROOM(crossings,
     cmocka_unit_test(bilinear_period),
     cmocka_unit_test(stiff_stop),
@@ -516,6 +537,7 @@ ROOM(crossings,
     cmocka_unit_test(chatter),
     cmocka_unit_test(held_behind_the_last),
     cmocka_unit_test(overflow_is_not_chatter),
+    cmocka_unit_test(tops_are_seen),
     cmocka_unit_test(bounds_hold),
     cmocka_unit_test(random_systems),
     cmocka_unit_test(parts_of_a_step))
