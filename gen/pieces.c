@@ -7,8 +7,7 @@
 
 /* ---- words ---- */
 
-static bool begins_word(char c) { return isalpha((unsigned char)c) || c == '_'; }
-static bool in_word(char c) { return isalnum((unsigned char)c) || c == '_'; }
+static bool begins_word(char c) { return in_name(c) && !isdigit((unsigned char)c); }
 
 /* Past what begins at `from`: a comment, a string, a character, a number, a word or a sign */
 static const char *token_end(const char *from)
@@ -23,10 +22,8 @@ static const char *token_end(const char *from)
 			at += *at == '\\' && at[1];
 		return *at ? at + 1 : at;
 	}
-	if (isdigit((unsigned char)*from))
-		for (; in_word(*at) || *at == '.'; at++) {}
-	else if (begins_word(*from))
-		for (; in_word(*at); at++) {}
+	while (in_name(*from) && (in_name(*at) || (*at == '.' && isdigit((unsigned char)*from))))
+		at++;
 	return at;
 }
 

@@ -142,25 +142,21 @@ static const char *put_word(const struct including *in, FILE *to, const char *te
 }
 
 /* 0x1p-3, 1.5e3 up to a sign: no word begins in it */
-static const char *behind_digits(const char *text)
+static const char *put_digits(FILE *to, const char *text)
 {
-	while (in_name(*text) || *text == '.')
-		text++;
-	return text;
+	const char *end = text;
+	while (in_name(*end) || *end == '.')
+		end++;
+	put(to, text, (size_t)(end - text));
+	return end;
 }
 
 static void put_words(const struct including *in, FILE *to, const char *text, int depth)
 {
-	for (const char *at = text, *end; *at; at = end) {
-		const char *quoted = behind_quoted(at, false);
-		const bool digit = isdigit((unsigned char)*at) != 0;
-		if (!quoted && !digit && in_name(*at)) {
-			end = put_word(in, to, at, depth);
-			continue;
-		}
-		end = quoted ? quoted : digit ? behind_digits(at) : behind_plain(at);
-		put(to, at, (size_t)(end - at));
-	}
+	while (*text)
+		text = isdigit((unsigned char)*text) ? put_digits(to, text)
+		       : in_name(*text)		     ? put_word(in, to, text, depth)
+						     : put_other(to, text);
 }
 
 /* ---- conditions ---- */

@@ -37,6 +37,13 @@ const char *behind_plain(const char *text)
 	return text;
 }
 
+const char *put_other(FILE *to, const char *text)
+{
+	const char *quoted = behind_quoted(text, false), *end = quoted ? quoted : behind_plain(text);
+	put(to, text, (size_t)(end - text));
+	return end;
+}
+
 /* Behind a line of the preprocessor, and those that continue it */
 static const char *behind_directive(const char *text)
 {

@@ -70,45 +70,22 @@ static const char *print_number(FILE *to, const char *text)
 	return end;
 }
 
-static const char *print_other(FILE *to, const char *text)
-{
-	const char *end = behind_plain(text);
-	put(to, text, (size_t)(end - text));
-	return end;
-}
-
 void print_single(FILE *to, const char *text, const char *name)
 {
 	(void)name;
-	while (*text) {
-		const char *quoted = behind_quoted(text, false);
-		put(to, text, quoted ? (size_t)(quoted - text) : 0);
-		if (quoted)
-			text = quoted;
-		else if (isdigit((unsigned char)*text))
-			text = print_number(to, text);
-		else if (in_name(*text))
-			text = print_name(to, text);
-		else
-			text = print_other(to, text);
-	}
+	while (*text)
+		text = isdigit((unsigned char)*text) ? print_number(to, text)
+		       : in_name(*text)		     ? print_name(to, text)
+						     : put_other(to, text);
 }
 
 void print_own_functions(FILE *to, const char *text, const char *name)
 {
 	(void)name;
 	while (*text) {
-		const char *quoted = behind_quoted(text, false);
-		const size_t length = !quoted && in_name(*text) ? name_length(text) : 0;
-		if (quoted) {
-			put(to, text, (size_t)(quoted - text));
-			text = quoted;
-		} else if (length > 0) {
-			put(to, "pl_", is_function(text, length) ? 3 : 0);
-			put(to, text, length);
-			text += length;
-		} else {
-			text = print_other(to, text);
-		}
+		const size_t length = name_length(text);
+		put(to, "pl_", is_function(text, length) ? 3 : 0);
+		put(to, text, length);
+		text = length > 0 ? text + length : put_other(to, text);
 	}
 }
