@@ -330,7 +330,7 @@ static inline int PL(go_over)(PL_TYPE *s, const real u[], real c[PL_ORDER + 1][P
     }
     PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
 #if PL_PROJECTS
-    s->status |= PL(project)(s, PL_OVER * PL_H, next, low);
+    s->status |= PL(project)(s, PL_OVER > 1 ? PL_OVER * PL_H : PL_H, next, low);
 #endif
 #if PL_WATCHED
     if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {

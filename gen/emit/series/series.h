@@ -50,7 +50,6 @@ void emit_expansion_members(const struct emitter *e);
 /* Of steps by collocation too, where there is a series beside it */
 void emit_series_ahead(const struct emitter *e);                         /* NAME_ahead: the sum of the series */
 void emit_series_functions(const struct emitter *e);                     /* NAME_expand_from, NAME_slopes_at */
-void emit_pass_time(const struct emitter *e);                            /* NAME_pass_time */
 void emit_serving_step(const struct emitter *e);                         /* NAME_step, by NAME_serve */
 void emit_expansion_step(const struct emitter *e);
 void emit_expansion_at(const struct emitter *e);

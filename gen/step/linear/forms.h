@@ -53,7 +53,6 @@ void choose_form_of_regions(struct step *step);             /* the same of a pie
 void find_carries(struct step *step);
 struct program *linear_program(const struct step *step);    /* from its table */
 /* in the code: loads that change have none */
-bool is_constant_column(const struct linear *system, int column); /* of the loads: it is 1 */
 
 /* ---- large.c: a large step by its independent blocks ---- */
 
