@@ -296,7 +296,9 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
 #endif
                      );
-        ds->status |= b.alone.status | b.ds.status;
+        pl_doubt_join(&ds->doubt, &b.alone.doubt, 0);
+        pl_doubt_join(&ds->doubt, &b.ds.doubt, 0);
+        ds->status = ds->doubt.status;
         top -= at[top] == row && top > 0;
     }
 #if PL_SLOPED

@@ -135,7 +135,9 @@ static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const
     PL(both_samples)(u, du, both);
 #endif
 #if PL_PARAMS > 0
-    ds->status |= PL(follow_params)(b, s) ? (unsigned)PL_D_FAILED : 0u;
+    if (PL(follow_params)(b, s)) {
+        pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
+    }
 #endif
     PL(follow)(b, s, ds);
     PL(step)(b PL_BOTH);
@@ -145,11 +147,13 @@ static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const
             ds->s[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
         }
     }
-    ds->status |= PL(status)(b) & PL_UNDECIDED ? (unsigned)PL_D_UNDECIDED : 0u;
-    ds->status |= PL(status)(b) & ~(PL_UNDECIDED | PL_INACCURATE) ? (unsigned)PL_D_FAILED : 0u;
+    if (PL(status)(b) & ~(PL_UNDECIDED | PL_INACCURATE)) {
+        pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
+    }
 #if PL_MOVED
-    ds->status |= b->contact.doubt.status;
+    pl_doubt_join(&ds->doubt, &b->contact.doubt, PL_OF(time)(s));
 #endif
+    ds->status = ds->doubt.status;
     (void)u;
     (void)du;
 }

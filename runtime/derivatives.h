@@ -41,7 +41,7 @@ void PL(set_d)(PL(d) *ds, real S[PL_DERIVATIVES][PL_STATES])
         ds->scale[i] = 0;
     }
 #endif
-    ds->status = 0;
+    ds->status = ds->doubt.status = 0;
 }
 
 void PL(get_d)(const PL_TYPE *s, const PL(d) *ds, real S[PL_DERIVATIVES][PL_STATES])
@@ -180,6 +180,11 @@ static unsigned PL(any_status_d)(const void *ds)
     return ((const PL(d) *)ds)->status;
 }
 
+static const pl_doubt *PL(any_doubt)(const void *ds)
+{
+    return &((const PL(d) *)ds)->doubt;
+}
+
 const pl_derivatives PL(derivatives) = {
     sizeof(PL(d)), PL_DERIVATIVES, PL(d_names), PL(any_init_d), PL(any_step_d), PL(any_out_d),
 #if PL_SLOPED
@@ -187,7 +192,7 @@ const pl_derivatives PL(derivatives) = {
 #else
     NULL,
 #endif
-    PL(any_status_d), PL(d_by), PL(any_gradient)
+    PL(any_status_d), PL(d_by), PL(any_gradient), PL(any_doubt)
 };
 
 #include "undef.h"

@@ -72,6 +72,7 @@
 #undef pl_model
 #undef pl_doubt
 #undef pl_doubt_add
+#undef pl_doubt_join
 #undef pl_moved
 #undef pl_multiply
 #undef pl_multiply_add

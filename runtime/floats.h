@@ -72,6 +72,7 @@
 #define pl_model pl_modelf
 #define pl_doubt pl_doubtf
 #define pl_doubt_add pl_doubtf_add
+#define pl_doubt_join pl_doubtf_join
 #define pl_moved pl_movedf
 #define pl_multiply pl_multiplyf
 #define pl_multiply_add pl_multiplyf_add

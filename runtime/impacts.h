@@ -96,7 +96,7 @@ static void vary_jump(const pl_guards *m, instant *at, int k)
     int i;
     for (i = 0; v != NULL && i < m->impacts; i++, back += m->size) {
         if (i != k && v->acted >> i & 1 && (m->impact[k].rest < 0 || magnitude(dot(m->size, row, back)) > 0)) {
-            v->status |= PL_D_ONE_SIDED;
+            pl_doubt_add(&v->doubt, PL_D_ONE_SIDED, m->impact[k].expression, at->time);
         }
     }
     if (v != NULL) {
@@ -125,8 +125,8 @@ static void miss(const pl_guards *m, const instant *at, int k, const real *e)
     for (i = m->degree, high = 0; i >= 0; i--) {
         high = high * low + e[i];
     }
-    if (high < m->limit[k] && pl_saltation_misses(size, m->limit[k] - high)) {
-        v->status |= PL_D_GRAZING;
+    if (pl_saltation_misses(size, m->limit[k] - high)) {
+        pl_doubt_add(&v->doubt, PL_D_GRAZING, m->impact[m->guard[k].impact].expression, at->time);
     }
 }
 

@@ -245,6 +245,6 @@ static void miss(const pl_events *m, const pl_instant *at, const column *e, int 
     }
     gap = sign * (b - high);
     if (pl_saltation_misses(e->terms + magnitude(b), gap)) {
-        pl_doubt_add(at->doubt, PL_D_GRAZING, function, at->time);
+        pl_doubt_add(at->doubt, PL_D_GRAZING, function, at->time + low * end * m->h);
     }
 }

@@ -292,24 +292,35 @@ typedef struct pl_moved {
     const int *back_watch;     /* the same, as of pl_events */
 } pl_moved;
 
-/* Why derivatives are in doubt: PL_D_... bits, and of each the event that was the first: its switching function, as
- * pl_crossing has it, and its time [s]. */
+/* Why derivatives are in doubt: PL_D_... bits, and of each, from the lowest on, the event that was the first: its
+ * switching function, as pl_crossing has it, -1: that is not known, and its time [s]. */
 typedef struct pl_doubt {
     unsigned status;
-    int function[3];
-    PL_REAL time[3];
+    int function[4];
+    PL_REAL time[4];
 } pl_doubt;
 
 static inline void pl_doubt_add(pl_doubt *d, unsigned bits, int function, PL_REAL time)
 {
     int i;
-    for (i = 0; i < 3; i++) {
+    for (i = 0; i < 4; i++) {
         if ((bits & ~d->status) >> i & 1u) {
             d->function[i] = function;
             d->time[i] = time;
         }
     }
     d->status |= bits;
+}
+
+/* ... of a step that started at this time */
+static inline void pl_doubt_join(pl_doubt *d, const pl_doubt *of, PL_REAL start)
+{
+    int i;
+    for (i = 0; i < 4; i++) {
+        if (of->status >> i & 1u) {
+            pl_doubt_add(d, 1u << i, of->function[i], start + of->time[i]);
+        }
+    }
 }
 
 typedef struct pl_events {
@@ -677,4 +688,5 @@ typedef struct pl_derivatives {
     /* NAME_gradient; w, ub may be NULL */
     size_t (*gradient)(const void *s, void *ds, size_t n, const PL_REAL *u, const PL_REAL *w, PL_REAL *lam,
                        PL_REAL *pb, PL_REAL *ub, void *snapshot, size_t snapshots);
+    const pl_doubt *(*doubt)(const void *ds);
 } pl_derivatives;

@@ -147,10 +147,10 @@ static void look_at_order(const searched *m, pl_variation *v, int jumps)
     const real none = 64 * REAL_EPSILON * m->h;
     const int together = v->last >= 0 && v->last != v->function && v->time - v->last_time <= none;
     if (v->function >= 0 && jumps && (v->time <= none || v->time >= m->h - none)) {
-        v->status |= PL_D_ONE_SIDED;
+        pl_doubt_add(&v->doubt, PL_D_ONE_SIDED, v->function, v->time);
     }
     if (together && v->function >= 0 && (jumps || v->jumped)) {
-        v->status |= PL_D_ONE_SIDED;
+        pl_doubt_add(&v->doubt, PL_D_ONE_SIDED, v->function, v->time);
     }
     v->last = v->function;
     v->last_time = v->time;
@@ -172,7 +172,7 @@ static void end_event(const searched *m, instant *at)
             pl_saltation_pass(m->size, column_of_time(m, v), v->when[p], v->S + (ptrdiff_t)p * m->size);
         }
         if (v->function >= 0 && (!(v->rate > 0 || v->rate < 0) || pl_saltation_grazes(v->size, v->rate, v->bend))) {
-            v->status |= PL_D_GRAZING;
+            pl_doubt_add(&v->doubt, PL_D_GRAZING, v->function, v->time);
         }
     }
     look_at_order(m, v, done || jumps);

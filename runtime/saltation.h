@@ -60,7 +60,7 @@ typedef struct pl_variation {
     PL_REAL *noise;                /* size, for work */
     PL_REAL *work;                 /* PL_VARIATION_WORK(size, degree) */
     int segment;                   /* of time */
-    unsigned status;               /* PL_D_... bits are added */
+    pl_doubt doubt;                /* PL_D_... bits are added; times are after the start of the step */
     /* An event that has begun, and what met before it: */
     int pending, function, before, sticks, upward, last;
     int jumped;

@@ -423,7 +423,7 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
     v.entry = PL(varied);
     v.segment = v.pending = v.sticks = v.upward = 0;
     v.function = v.last = -1;
-    v.status = 0;
+    v.doubt.status = 0;
     v.jumped = 0;
     v.acted = 0;
     v.S = S[0];
@@ -450,10 +450,16 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
             ds->s[p][PL_PLACE(i)] = S[p][i];
         }
     }
-    ds->status |= v.status;
     if (contact.status & PL_UNDECIDED) {
-        ds->status |= PL_D_UNDECIDED;
+        pl_doubt_add(&v.doubt, PL_D_UNDECIDED, -1, tau);
     }
+#if !PL_ALONE
+    for (i = 0; i < 4; i++) {
+        v.doubt.function[i] = -1; /* they are numbers of this part */
+    }
+#endif
+    pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
+    ds->status = ds->doubt.status;
 }
 #endif
 

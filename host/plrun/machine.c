@@ -353,6 +353,17 @@ unsigned instance_doubt(const struct instance *i)
 					       : m->derivatives->status(i->derivatives);
 }
 
+int instance_first_doubt(const struct instance *i, int bit, double *time)
+{
+	const struct machine *m = i->machine;
+	if (m->single) {
+		*time = (double)m->derivativesf->doubt(i->derivatives)->time[bit];
+		return m->derivativesf->doubt(i->derivatives)->function[bit];
+	}
+	*time = m->derivatives->doubt(i->derivatives)->time[bit];
+	return m->derivatives->doubt(i->derivatives)->function[bit];
+}
+
 double instance_time(const struct instance *i)
 {
 	const struct machine *m = i->machine;

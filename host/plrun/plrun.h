@@ -298,6 +298,8 @@ void instance_get(struct instance *i, double *y);
 void instance_allowed(struct instance *i, double *y);   /* where the machine has it */
 int instance_status(const struct instance *i);
 unsigned instance_doubt(const struct instance *i);    /* PL_D_... bits of its derivatives; 0 without */
+/* Of bit 0, 1, ... of those the first event: its switching function, or -1, and time */
+int instance_first_doubt(const struct instance *i, int bit, double *time);
 void instance_move(struct instance *i, const double *offset);  /* adds it to the state, at t = 0 */
 double instance_time(const struct instance *i);
 

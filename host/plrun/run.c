@@ -122,17 +122,20 @@ static char *status_text(int status, double t, bool single)
 static void report_doubt(const struct instance *s, unsigned *known, bool single)
 {
 	const unsigned doubt = instance_doubt(s) & ~*known;
-	const struct { unsigned bit; const char *text; } all[] = {
-		{ PL_D_GRAZING, "a stop was met, or all but met, so flatly that behind it they are not known" },
-		{ PL_D_ONE_SIDED, "events fell together, and they are those of one order" },
-		{ PL_D_UNDECIDED, "what is to stick and what is to slip had no answer" },
-		{ PL_D_FAILED, "their own steps have failed" }
+	const char *const all[] = {             /* PL_D_GRAZING and so on */
+		"a stop was met, or all but met, so flatly that behind it they are not known",
+		"events fell together, and they are those of one order",
+		"what is to stick and what is to slip had no answer", "their own steps have failed"
 	};
 	*known |= doubt;
-	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-		if (doubt & all[i].bit)
-			say_note(format("derivatives from t = %s on: %s", shortest(instance_time(s), single),
-					all[i].text));
+	for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {
+		double time;
+		if (!(doubt >> i & 1))
+			continue;
+		const int function = instance_first_doubt(s, i, &time);
+		say_note(format("derivatives from t = %s on%s: %s", shortest(time, single),
+				function < 0 ? "" : format(" (switching function %d)", function), all[i]));
+	}
 }
 
 /* ---- states far below the size that their error is measured by ---- */

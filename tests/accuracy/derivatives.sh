@@ -555,4 +555,12 @@ for off in 0 1e-16 -1e-16 2e-16 -2e-16 1e-14 -1e-14 1e-12 -1e-12 1e-11; do
 done
 [ "$grazes" -eq 10 ]
 result $? "$grazes of 10 grazing impacts are reported"
+# One beyond the stop by less than rounding, in a step of several regions
+printf '%s\n' 'model g' 'param R = 0.328, g = 0.19133297572387239142421089285377' 'coord x, y, z' 'init x = -0.115' \
+	"1.015*x'' + 0.206*x' + 11.996*x + 35.988*(x - y) = 2.856*cos(1.145*t)" \
+	"2.03*y'' + 0.206*y' + 11.996*y + 35.988*(2*y - x - z) = 0" \
+	"3.045*z'' + 0.206*z' + 11.996*z + 35.988*(z - y) + 20*deadzone(z, -0.188, 0.188) + friction(z', R) = 0" \
+	'stop between x, ground at g restitution 0.44' 'step 0.02' >g.spec
+"$plrun" g.spec 3 --sensitivity R 2>&1 >rows.csv | grep -q 'so flatly'
+result $? 'so is one within rounding'
 tap_end

@@ -92,6 +92,7 @@ static void emit_derivative_struct(const struct emitter *e)
 	if (d->varied)
 		say(e, "    double scale[$N_STATES];    /* the largest size of each state so far */\n");
 	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
+	       "    pl_doubt doubt;             /* of each the first event: switching function, time */\n"
 	       "};\n");
 }
 

@@ -119,10 +119,15 @@ void emit_all_varied(const struct emitter *e)
 		each_part(e, emit_varied_step);
 	}
 	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
+	say(e, "    const unsigned known = ds->status;\n"
+	       "    int i;\n");
 	if (e->step->derivatives->regions)
 		say(e, "    $n_d_vary_by(s, ds%s, tau);\n", sample_arguments(e));
 	else
 		each_part(e, emit_vary_call);
+	say(e, "    for (i = 0; i < 4; i++) {  /* times are after the start of the step */\n"
+	       "        if ((ds->status & ~known) >> i & 1u) { ds->doubt.time[i] += $n_time(s); }\n"
+	       "    }\n");
 	close_function(e, "");
 }
 

@@ -28,6 +28,9 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (32, 'a state has left the range that the spec gives it'),
           (64, 'the step has ended beyond a stop'),
           (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
+DOUBTS = ('a stop was met, or all but met, so flatly that behind it they are not known',
+          'events fell together, and they are those of one order',
+          'what is to stick and what is to slip had no answer', 'their own steps have failed')
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
            32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
@@ -281,12 +284,16 @@ def _derivatives(real: Any) -> type[ctypes.Structure]:
     p, size, count = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int
     call: Any = ctypes.CFUNCTYPE
 
+    class Doubt(ctypes.Structure):
+        _fields_ = [('status', ctypes.c_uint), ('function', count * 4), ('time', real * 4)]
+
     class Derivatives(ctypes.Structure):
         _fields_ = [('size', size), ('columns', count), ('names', ctypes.POINTER(ctypes.c_char_p)),
                     ('init', call(None, p, p)), ('step', call(None, p, p, p, p)), ('out', call(None, p, p, p)),
                     ('hold', call(None, p, p)), ('status', call(ctypes.c_uint, p)),
                     ('by', ctypes.POINTER(real * 4)),
-                    ('gradient', call(size, p, p, size, p, p, p, p, p, p, size))]
+                    ('gradient', call(size, p, p, size, p, p, p, p, p, p, size)),
+                    ('doubt', call(ctypes.POINTER(Doubt), p))]
     return Derivatives
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 
-from ._code import Error
+from ._code import DOUBTS, Error
 
 if TYPE_CHECKING:
     from . import Model
@@ -268,6 +268,13 @@ class Derivatives:
         if done < n:
             self._fail(rows, first + done)
         J *= c.per
+        doubt = c.derivatives.doubt(self._moved.ctypes.data).contents
+        for bit, text in enumerate(DOUBTS):
+            if doubt.status >> bit & 1:
+                warnings.warn('{}: derivatives from t = {:g} on{}: {}'.format(
+                    self.name, doubt.time[bit],
+                    '' if doubt.function[bit] < 0 else ' (switching function {})'.format(doubt.function[bit]), text),
+                    stacklevel=3)
         return self._narrow(rows), J[:, 0] if self._squeeze and len(self.outputs) == 1 else J
 
     def vjp(self: Any, u: Any, w: Any, jac: Any = True, *, end: Any = None,
