@@ -7,7 +7,7 @@
 typedef struct leaving { /* what stood before the event */
     int met;             /* whether what is met has a derivative: no formula that goes on without a jump */
     int leapt;           /* a load that jumps has met it, at a time of its own */
-    int function, listed, impacts;
+    int function, crossings_before, impacts;
     uint32_t held;
     unsigned doubt; /* for the case that the field jumps */
 } leaving;
@@ -124,7 +124,7 @@ static leaving leave(const pl_events *m, pl_instant *at)
     int i;
     renew(m, at);
     l.function = at->next.expression;
-    l.listed = *at->crossings;
+    l.crossings_before = *at->crossings;
     l.impacts = at->chain.all;
     l.held = held_now(m, at);
     l.doubt = 0;
@@ -161,8 +161,8 @@ static void move_back(const pl_events *m, pl_instant *at)
 static unsigned order_of_events(const pl_events *m, const pl_instant *at, const leaving *l)
 {
     const real none = 64 * REAL_EPSILON * m->h, time = at->time;
-    const int again = l->listed > 0 && at->crossing[l->listed - 1].expression != l->function &&
-                      time - at->crossing[l->listed - 1].time <= none;
+    const int again = l->crossings_before > 0 && at->crossing[l->crossings_before - 1].expression != l->function &&
+                      time - at->crossing[l->crossings_before - 1].time <= none;
     const int several = (at->chain.acting & (at->chain.acting - 1u)) != 0;
     return again || several || time <= none || time >= m->h - none ? PL_D_ONE_SIDED : 0;
 }

@@ -406,7 +406,9 @@ static void judge_surface(struct search *s, const struct surface *surface, const
 	int order = order_on(s, surface, form, &sure);
 	if (is_harmless_time(model, surface->g, order))
 		return;
-	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g))
+	/* what a kink does to a derivative is a jump, and no friction */
+	if (order == JUMP && sure && !model->switching && reads_velocity(model, surface->g) &&
+	    s->b->request->again.derivatives == 0)
 		report_friction(surface->test, surface_text(model, surface->g));
 	bool timed = linear_in_time(surface->g, &factor, &phase), full = order % 10 == 0 || order == SURE;
 	if (!full && !timed && !smooth->singular) {
