@@ -97,6 +97,7 @@ struct linear empty_system(const struct model *model);
 bool is_linear(const struct building *b);                   /* with constant coefficients, loads in time excepted */
 /* of equations that were collected, whichever coordinates they belong to: a scheme is for them that leaves something */
 bool leaves_over(const struct building *b);
+void go_by_regions_where_tuned(struct building *b);
 bool needs_regions(const struct building *b);                    /* scheme exact has regions for them */
 void build_system(struct building *b);                      /* M, C, K, loads, inputs */
 /* whose coordinates or inputs do not have the factors of the first segment; NULL: none */

@@ -470,6 +470,8 @@ static void collect_model(struct building *b)
 		statement_guard(evaluate_modes, b);
 	b->collector.constant_only = false;     /* where what had to be constant was not */
 	collect_intervals(b);
+	if (b->spec->tuned.count > 0 && !diagnostics_errors())
+		go_by_regions_where_tuned(b);
 	if (b->spec->tuned.count > 0 && (all || request->again.factor) && !diagnostics_errors())
 		collect_with_params(b);
 	gather_impacts(b);

@@ -118,6 +118,17 @@ bool needs_regions(const struct building *b)
 	return b->model->scheme == SCHEME_EXACT && demands.piecewise && (!demands.linear || b->spec->whens > 0);
 }
 
+/* Tunable params change matrices of regions; a scheme without a remainder has none for its parts between impacts. */
+void go_by_regions_where_tuned(struct building *b)
+{
+	struct model *model = b->model;
+	if (b->spec->whens == 0 || !model->request.at.scheme.source || model->scheme == SCHEME_EXACT || leaves_over(b))
+		return;
+	stand_aside(model->request.at.scheme, format("scheme %s", scheme_name(model->scheme)),
+		    "without a remainder, impacts and tunable params go by the regions of scheme exact");
+	model->scheme = SCHEME_EXACT;
+}
+
 /* Only loads may change their formula in time. */
 static bool check_changes(struct building *b)
 {
@@ -324,15 +335,6 @@ static void keep_loads(struct building *b, const char *why)
 	b->request = request;
 }
 
-/* Tunable params change matrices of regions; a scheme that has no remainder would have no others for its parts. */
-static void go_by_regions(struct building *b)
-{
-	struct model *model = b->model;
-	stand_aside(model->request.at.scheme, format("scheme %s", scheme_name(model->scheme)),
-		    "without a remainder, impacts and tunable params go by the regions of scheme exact");
-	model->scheme = SCHEME_EXACT;
-}
-
 /* Exact where there is no remainder and no scheme was asked for; the equations for all time where something is. */
 static bool choose_scheme(struct building *b)
 {
@@ -341,9 +343,6 @@ static bool choose_scheme(struct building *b)
 	const bool constrained = b->spec->count.multipliers > 0, exact = !constrained && is_piecewise_linear(b);
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
-	if (model->contacts.impacts > 0 && b->spec->tuned.count > 0 && model->scheme != SCHEME_EXACT && is_linear(b) &&
-	    !leaves_over(b))
-		go_by_regions(b);
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
