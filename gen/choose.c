@@ -104,7 +104,7 @@ static bool try_one(struct choosing *c, bool single, bool compensated, enum step
 	a->made = c->step;
 	if (!a->refused)
 		certify(c);
-	else if (a->model->truncated && !c->written->truncated)
+	else if (a->model->reduction.truncated && !c->written->reduction.truncated)
 		return false;           /* as of all modes, which are tried too */
 	*MORE(c->choice->alternative, c->choice->alternatives) = *a;
 	return !a->refused && a->bound_error_ratio <= 1;
@@ -147,14 +147,14 @@ static void try_form(struct choosing *c, enum step_form form)
 /* Its steps of states cost so much more than those of modes that only these are tried. */
 static bool is_large(const struct model *model)
 {
-	return model->system.states > LIMIT_UNROLLED_STATES && !model->truncated;
+	return model->system.states > LIMIT_UNROLLED_STATES && !model->reduction.truncated;
 }
 
 static void try_forms(struct choosing *c)
 {
 	static const enum step_form forms[] = { FORM_DIRECT, FORM_DELTA, FORM_KICK_DRIFT_KICK, FORM_MODAL };
 	const struct variant *v = c->variant;
-	const bool requested = c->request->form != FORM_AUTO, modes = v->model->truncated;
+	const bool requested = c->request->form != FORM_AUTO, modes = v->model->reduction.truncated;
 	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
 		const bool needless = (forms[i] == FORM_MODAL ? modes : is_large(v->model) && v->modes) ||
 				      (forms[i] != FORM_DIRECT && modes && !c->request->compensated &&
@@ -169,7 +169,7 @@ static struct variant *variant_of(struct choosing *c, struct model *model)
 	struct variant *v = NEW(struct variant);
 	v->model = model;
 	v->dropped = ARRAY(double, c->stepped->needs.requirements);
-	if (!model->truncated || c->request->form == FORM_MODAL)
+	if (!model->reduction.truncated || c->request->form == FORM_MODAL)
 		v->modes = step_of(c, model, FORM_MODAL);
 	if (!is_large(model) || !v->modes || c->request->form != FORM_AUTO)
 		v->states = step_of(c, model, FORM_DIRECT);
@@ -283,7 +283,7 @@ static void try_fewer(struct choosing *c)
 /* What the modes that are written to be dropped lose */
 static void count_written(struct choosing *c)
 {
-	const struct modal_truncation *s = c->written->truncated;
+	const struct modal_truncation *s = c->written->reduction.truncated;
 	struct modes *modes = (struct modes *)(uintptr_t)s->modes;
 	int *order = ARRAY(int, modes->count), kept = 0;
 	for (int which = 1; which >= 0; which--)
@@ -363,7 +363,8 @@ static void try_all(struct choosing *c)
 {
 	c->choice = NEW(struct choice);
 	c->variant = variant_of(c, c->stepped);
-	const struct model *full = c->written->truncated ? c->written->truncated->modes->model : c->stepped;
+	const struct modal_truncation *truncated = c->written->reduction.truncated;
+	const struct model *full = truncated ? truncated->modes->model : c->stepped;
 	struct step *exact = c->variant->states ? c->variant->states : c->variant->modes;
 	if (full != c->stepped) {
 		struct model *whole = NEW(struct model);
@@ -376,10 +377,10 @@ static void try_all(struct choosing *c)
 		c->largest[i] = c->exact ? largest_of(c->exact, i) * (1 - 0x1p-52)
 				: exact	 ? largest_of_output(exact, &c->stepped->needs.requirement[i])
 					 : 0;
-	if (c->written->truncated)
+	if (truncated)
 		count_written(c);
 	try_forms(c);
-	if (!c->written->truncated)
+	if (!truncated)
 		try_fewer(c);
 	sort_by_cost(c->choice);
 	walk_all(c);

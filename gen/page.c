@@ -142,7 +142,7 @@ static void put_bodies(FILE *to, const struct step *step, struct spec *spec)
 	const struct model *model = step->shown->model;
 	int count = 0;
 	fputs(",\n\"elements\":[", to);
-	if (!model->truncated && model->written == model) {
+	if (!model->reduction.truncated && model->written == model) {
 		put_network(to, spec, &count);
 		const bool plain = count == 0;
 		for (int i = 0; i < model->n && plain; i++)

@@ -145,7 +145,7 @@ static void declare_tables(const struct emitter *e)
 		announce(e, spell(e, "extern const double $n_Gamma[$N_STATES][%d];", input_columns(e->system)),
 			most_samples_before(e) ? "... + Gamma u; of an input: its samples around the step" :
 			e->ramps ? "... + Gamma u; of a ramp: before, after" : "... + Gamma u");
-	if (e->model->truncated) {
+	if (e->model->reduction.truncated) {
 		const int all = e->model->written->system.states;
 		announce(e, spell(e, "extern const double $n_project[$N_STATES][%d];", all),
 			"y = project x, x: a state of all modes");

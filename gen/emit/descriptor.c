@@ -55,7 +55,7 @@ static void emit_rounded(const struct emitter *e, int rows, int columns, const m
 /* Between the states of all modes and those of the kept ones */
 static void emit_mode_matrices(const struct emitter *e)
 {
-	const struct modal_truncation *s = e->model->truncated;
+	const struct modal_truncation *s = e->model->reduction.truncated;
 	const struct model *full = e->model->written;
 	const int states = e->system->states, all = full->system.states;
 	if (!s)

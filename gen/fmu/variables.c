@@ -113,7 +113,7 @@ struct fmu_variables variables_of(const struct step *step)
 	for (int i = 0; i < system->states; i++) {
 		add(&v, FMU_STATE, format("state.%s", shown->names.state[i]), format("state.%s", shown->names.state[i]),
 		    round_rational(shown->initial[i]));
-		if (!shown->truncated)
+		if (!shown->reduction.truncated)
 			set_unit(&v.variable[v.count - 1], unit_of_shown_state(shown, i));
 	}
 	add_constants(&v, model->spec);

@@ -13,7 +13,6 @@
 struct massless_slider;
 struct drag;
 struct impact;
-struct modal_truncation;
 struct switching;
 struct tuning;
 
@@ -76,7 +75,6 @@ struct model {
 	struct state_range *range;
 	/* the model is over other coordinates than the written ones; NULL: over those */
 	const struct relative *relative;
-	const struct modal_truncation *truncated; /* it is of some modes of another; NULL: it is not */
 };
 
 const struct unit *unit_of_state(const struct model *model, int state); /* as it is kept; NULL: not known */

@@ -111,12 +111,13 @@ struct wanted_modes {               /* of the statement `modes`, or of --modes *
 	bool each;                  /* those numbers; else number[0] is how many, the best */
 	bool static_correction;     /* what is dropped follows loads and inputs at once */
 };
-struct reduction {                  /* what --reduce found */
+struct reduction {                  /* what --reduce found, and 'modes' */
 	int *place;                 /* of a reduced model, per written state: the state that is it, or -1 */
 	bool irreducible;           /* it was asked for, and every state is seen */
 	int dropped;                /* written states that are no combination of the reduced ones */
 	const char **dropped_name;
 	mpq_t *row;                 /* of a reduced model, states x written states: each state over the written ones */
+	const struct modal_truncation *truncated; /* the model is of some modes of another; NULL: it is not */
 };
 struct nonlinear {                  /* what no M, C and K have */
 	const struct node *obstacle; /* the first term that stood in the way of exact, where no scheme was asked for; */

@@ -17,7 +17,7 @@ static void text_kept_modes(FILE *to, const struct model *model)
 		lost = format("%s%s%s", lost, i ? ", " : "", truncation_text(model, i));
 	fprintf(to, "Modes %s of %d are kept; %s. From the start and under the loads%s outputs lose at most %s (sums "
 		    "of |residues|, for all time).\n",
-		mode_numbers(model->truncated, true), modes_of_model(model->truncated),
+		mode_numbers(model->reduction.truncated, true), modes_of_model(model->reduction.truncated),
 		static_correction_text(model), model->system.inputs ? ", inputs 0," : "", lost);
 }
 
@@ -25,10 +25,10 @@ static void text_of_linear(FILE *to, const struct model *model)
 {
 	if (!scheme_row(model->scheme)->holds_coupling)
 		fprintf(to, "%s is approximated; each constant is its closed form, correctly rounded.\n",
-			model->truncated                ? "Scheme exact: modes are dropped, nothing else"
+			model->reduction.truncated                ? "Scheme exact: modes are dropped, nothing else"
 			: model->scheme == SCHEME_EXACT ? "Scheme exact: nothing"
 							: "There is no remainder: nothing");
-	if (model->truncated)
+	if (model->reduction.truncated)
 		text_kept_modes(to, model);
 }
 

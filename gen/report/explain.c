@@ -323,7 +323,7 @@ void text_course(FILE *to, const struct step *step)
 		text_region_list(to, step);
 	else if (has_remainder(step))
 		text_split(to, step);
-	if (model->truncated)
+	if (model->reduction.truncated)
 		text_modal_truncation(to, model);
 	else if (model->written != model)
 		text_reduction(to, step);
@@ -357,7 +357,7 @@ void explain_text(FILE *to, const struct step *step)
 	text_matrix(to, "C", model->written->n, model->written->system.C);
 	text_matrix(to, "K", model->written->n, model->written->system.K);
 	text_loads(to, &model->written->system);
-	if (model->truncated)
+	if (model->reduction.truncated)
 		fputs("\nOf the modes that are kept:\n", to);
 	if (is_nonlinear(step))
 		text_left_out(to, step);

@@ -289,7 +289,7 @@ void explain_json(FILE *to, const struct step *step)
 	member_names(to, "inputs", model->spec->count.inputs, input);
 	json_units(to, step);
 	json_dropped(to, model);
-	if (model->truncated)
+	if (model->reduction.truncated)
 		json_modal_truncation(to, model);
 	if (model->spec->assembly.parts)
 		json_assembly(to, model->spec);

@@ -43,7 +43,7 @@ static double rounded_up(double x)
 /* tip 3.2e-05 */
 const char *truncation_text(const struct model *model, int output)
 {
-	const struct modal_truncation *s = model->truncated;
+	const struct modal_truncation *s = model->reduction.truncated;
 	const double mode_error = truncation_of_modes(s->modes, s->kept, s->static_correction, output);
 	const char *name = model->output[output].name;
 	return isfinite(mode_error) ? format("%s %.3g", name, rounded_up(mode_error))
@@ -54,7 +54,7 @@ const char *truncation_text(const struct model *model, int output)
 const char *static_correction_text(const struct model *model)
 {
 	const struct linear *system = &model->system;
-	if (!model->truncated->static_correction)
+	if (!model->reduction.truncated->static_correction)
 		return "the others are left out";
 	if (!system->loads && !system->inputs)
 		return "nothing drives the others";
@@ -72,7 +72,7 @@ static double ratio_of(const struct mode *mode)
 /* Each mode, and what it gives */
 void text_modal_truncation(FILE *to, const struct model *model)
 {
-	const struct modal_truncation *s = model->truncated;
+	const struct modal_truncation *s = model->reduction.truncated;
 	const struct modes *modes = s->modes;
 	fprintf(to, "    %-9s %-16s %-14s %-10s largest share of an output\n", "mode", "frequency [Hz]",
 		"damping ratio", "");
@@ -95,7 +95,7 @@ void text_modal_truncation(FILE *to, const struct model *model)
 /* Members of an object */
 void json_modal_truncation(FILE *to, const struct model *model)
 {
-	const struct modal_truncation *s = model->truncated;
+	const struct modal_truncation *s = model->reduction.truncated;
 	fputs("  \"mode_shares\": [\n", to);
 	for (int i = 0; i < s->modes->count; i++) {
 		const struct mode *mode = &s->modes->mode[i];

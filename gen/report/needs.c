@@ -11,7 +11,7 @@
 /* modes 7-12 dropped, static gain kept; NULL: all are there */
 static const char *dropped_text(const struct alternative *a)
 {
-	const struct modal_truncation *s = a->model->truncated;
+	const struct modal_truncation *s = a->model->reduction.truncated;
 	const char *numbers = s ? mode_numbers(s, false) : "";
 	return *numbers ? format("modes %s dropped%s", numbers, s->static_correction ? ", static gain kept" : "")
 		: NULL;
@@ -170,7 +170,7 @@ static void json_tried(FILE *to, const struct alternative *a)
 
 static void json_modes(FILE *to, const struct alternative *a)
 {
-	const struct modal_truncation *s = a->model->truncated;
+	const struct modal_truncation *s = a->model->reduction.truncated;
 	fprintf(to, "\"modes\": \"%s\", \"statics\": %s, ", s ? mode_numbers(s, true) : "all",
 		s && s->static_correction ? "true" : "false");
 }

@@ -79,7 +79,7 @@ static void print_words(FILE *to, const struct step *step, void (*print)(FILE *t
 static const struct model *reported_model(const struct step *step)
 {
 	const struct model *model = step->shown->model;
-	return model->truncated ? model : model->written;
+	return model->reduction.truncated ? model : model->written;
 }
 
 static void print_equations(FILE *to, const struct step *step)

@@ -230,7 +230,7 @@ int shapes_of_step(const struct step *step, struct mode_shape **shape, const str
 {
 	const struct model *model = step->shown->model;
 	struct pole_report *pole;
-	*of = model->truncated ? model : model->written;     /* that the poles are of */
+	*of = model->reduction.truncated ? model : model->written;     /* that the poles are of */
 	int count = poles_of(step->model, step->written, &pole);
 	return shapes_of(&(*of)->system, count, pole, shape);
 }

@@ -16,7 +16,7 @@ const char *unit_of_listed(const struct step *step, enum listed kind, int index)
 {
 	const struct model *model = step->shown->model, *written = model->written;
 	switch (kind) {
-	case LISTED_STATE:  return text_of(model->truncated ? NULL : unit_of_state(model, index));
+	case LISTED_STATE:  return text_of(model->reduction.truncated ? NULL : unit_of_state(model, index));
 	case LISTED_INPUT:  return text_of(written->system.input[index].unit);
 	case LISTED_OUTPUT: return text_of(model->output[index].unit);
 	default:            return text_of(tunables_of(step->model)->param[index].symbol->unit);

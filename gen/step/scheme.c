@@ -354,7 +354,7 @@ static struct resolvent *resolvent_of_written(const struct model *model)
 {
 	static const struct model *last;
 	static struct resolvent *made;
-	const struct model *written = model->truncated ? model : model->written;
+	const struct model *written = model->reduction.truncated ? model : model->written;
 	if (written != last || !made)
 		made = resolvent_of(&written->system);
 	last = written;

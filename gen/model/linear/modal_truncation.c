@@ -289,7 +289,7 @@ static struct model *model_of(const struct selection *s, bool direct, bool stati
 	project_start(s, shorter->initial);
 	shorter->equations.highest = ARRAY(struct output *, s->coords);
 	shorter->output = rows_over(s, direct);
-	shorter->truncated = modal_truncation_of(s, static_correction);
+	shorter->reduction.truncated = modal_truncation_of(s, static_correction);
 	shorter->reduction.place = ARRAY(int, model->system.states);
 	for (int i = 0; i < model->system.states; i++)
 		shorter->reduction.place[i] = -1;       /* no written state is a state */
