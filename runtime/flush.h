@@ -49,8 +49,8 @@ static PL_APART void PL(flush)(PL_TYPE *s)
     for (i = 0; i < PL_STATES; i++) {
         int least = PL_FLUSH_PART(i) < PL_DECAYING ? PL(flush_least) : 0;
 #if PL_FLUSHES_BESIDE
-        const int beside = most[PL_FLUSH_PART(i)] - PL(flush_beside);
-        least = beside > least && beside < PL(flush_one) ? beside : least;
+        const int small = most[PL_FLUSH_PART(i)] - PL(flush_beside);
+        least = small > least && small < PL(flush_one) ? small : least;
 #endif
         if (PL(flush_exponent)(s->y[i]) < least) {
             s->y[i] = 0;
