@@ -119,8 +119,8 @@ static const char *random_text(uint64_t seed)
 static struct model *model_of(const char *text, const struct spec *tunables, const mpq_t *values)
 {
     struct request *request = NEW(struct request);
-    for (int k = 0; tunables && k < tunables->tunables - tunables->derived; k++)
-        definitions_add(format("%s=%s", tunables->tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k])),
+    for (int k = 0; tunables && k < tunables->tuned.count - tunables->tuned.derived; k++)
+        definitions_add(format("%s=%s", tunables->tuned.tunable[k].symbol->name, mpq_get_str(NULL, 10, values[k])),
                         &request->definitions);
     struct spec *spec = spec_of("spec", text);
     struct model *model = spec ? model_build(spec, request) : NULL;
