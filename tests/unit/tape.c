@@ -324,7 +324,7 @@ static bool first_varies(const void *context, const struct tape_node *n)
 /* Of x0 there is one a lane; what all share is widened where it is set or accumulated. */
 static void tape_text_of_lanes(void **state)
 {
-	static const struct tape_lanes lanes = { "wide", "all", first_varies };
+	static const struct tape_lanes lanes = { "wide", "all", "each_", first_varies };
 	struct tape_target target = c_text;
 	target.lanes = &lanes;
 	struct tape *t = tape_new();

@@ -8,7 +8,7 @@ syntax case match
 syntax match   plgenStatement "^\s*\(model\|param\|coord\|init\|let\|input\)\>"
 syntax match   plgenStatement "^\s*\(output\|matrix\|mass\|spring\|damper\|force\)\>"
 syntax match   plgenStatement "^\s*\(step\|scheme\|operator\|tunable\|tolerance\|substeps\|events\|modes\|use\)\>"
-syntax match   plgenStatement "^\s*\(need\|budget\|energy\|dissipation\|constraint\)\>"
+syntax match   plgenStatement "^\s*\(need\|budget\|regions\|energy\|dissipation\|constraint\)\>"
 syntax match   plgenStatement "^\s*\(when\|stop\|friction\|range\|draw\|sensitivity\)\>"
 syntax keyword plgenWord at hold first third fifth seventh between on ground as with
 syntax keyword plgenWord within until for instructions without static restitution
