@@ -3,7 +3,8 @@
  * steps came to where the file was made: a wrong constant anywhere in NAME_step, NAME_jump, NAME_at or in the state
  * that NAME_init leaves shows as a deviation.  Included by the file of the model, which defines before it
  *
- *     PL(name), PL_SINGLE, PL_TYPE, PL_H     the prefix of the model before a name; 1: in float; the model; step [s]
+ *     PL(name), PL_SINGLE, PL_TYPE           the prefix of the model before a name; 1: in float; the model
+ *     PL_KNOWN_H                 the step of the states that are known [s]
  *     PL_STATES, PL_INPUTS       the states; the inputs that a step is given
  *     PL_ROWS, PL_CROSSED        states that are known; crossings of breakpoints until the last of them
  *     PL_JUMPS, PL_AT            whether there is NAME_jump; NAME_at
@@ -44,13 +45,13 @@ static real PL(crossed_as)(const PL_TYPE *s, uint64_t k, int *found, real worst)
     int i;
     for (i = 0; i < count; i++) {
         real off;
-        if (k == 0 && !(crossing[i].time > (real)0.0009765625 * PL_H)) {
+        if (k == 0 && !(crossing[i].time > (real)0.0009765625 * PL_KNOWN_H)) {
             continue; /* where the start stands is found there */
         }
         if (*found == PL_CROSSED) {
             return (real)1e30;
         }
-        off = ((real)k - (real)PL(known_crossing_step)[*found]) * PL_H + crossing[i].time -
+        off = ((real)k - (real)PL(known_crossing_step)[*found]) * PL_KNOWN_H + crossing[i].time -
               PL(known_crossing)[*found][0];
         off = (off < 0 ? -off : off) / PL(known_crossing)[*found][1];
         if (!(off <= worst) && worst == worst) {
@@ -103,7 +104,7 @@ static real PL(replayed)(PL_TYPE *s, real worst)
 #if PL_INPUTS > 0
     PL(known_sample)(0, u);
 #endif
-    PL(at)(s PL_GIVEN, (real)0.5 * PL_H, y);
+    PL(at)(s PL_GIVEN, (real)0.5 * PL_KNOWN_H, y);
     worst = PL(deviation)(y, PL(known_between), worst);
 #endif
     return worst;

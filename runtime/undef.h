@@ -173,6 +173,7 @@
 #undef PL_KIND
 #undef PL_KINDS
 #undef PL_KNOWN
+#undef PL_KNOWN_H
 #undef PL_LADDER
 #undef PL_LANES
 #undef PL_LARGE

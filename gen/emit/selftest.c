@@ -86,6 +86,7 @@ void emit_selftest(const struct emitter *e, bool jumps)
 	emit_sizes(e, "selftest.h", { "STATES", r.states }, { "INPUTS", outer_inputs(e->model) }, { "ROWS", r.rows },
 		   { "CROSSED", r.crossings },
 		   { "JUMPS", jumps }, { "AT", e->step->series.emitted });
+	say_macro(e, "KNOWN_H", format("%s_H", e->upper));
 	if (r.crossings)
 		say_macro(e, "MAX_EVENTS", format("%s_MAX_EVENTS", e->upper));
 	say_include(e, "selftest.h");
