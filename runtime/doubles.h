@@ -3,6 +3,7 @@
 #undef pl_accumulate
 #undef pl_block
 #undef pl_cached
+#undef pl_cached_guards
 #undef pl_cached_matrix
 #undef pl_chain
 #undef pl_crossing

@@ -3,6 +3,7 @@
 #define pl_accumulate pl_accumulatef
 #define pl_block pl_blockf
 #define pl_cached pl_cachedf
+#define pl_cached_guards pl_cachedf_guards
 #define pl_cached_matrix pl_cachedf_matrix
 #define pl_chain pl_chainf
 #define pl_crossing pl_crossingf

@@ -34,9 +34,28 @@ static instant instant_of(const pl_guards *m, real *x, pl_contact *c, pl_crossin
     at.work = work;
     at.time = 0;
     at.before = c->region;
+    at.only = -1;
     at.chain = no_impact(m->h);
     VARIED(at.v = (pl_variation *)0;)
     return at;
+}
+
+/* Where matrices are sums, each sticks or slips whatever others do. */
+static void resolve_all(const pl_guards *m, instant *at, int turned)
+{
+    int i, sweep, before = -1;
+    if (m->cached == NULL) {
+        resolve(m, at, turned);
+        return;
+    }
+    for (sweep = 0; sweep <= m->switches && at->c->region != before; sweep++) {
+        before = at->c->region;
+        for (i = 0; i < m->switches; i++) {
+            at->only = i;
+            resolve(m, at, turned);
+        }
+    }
+    at->only = -1;
 }
 
 /* What is on a breakpoint that stands twice is held first, but for what flies off. */
@@ -75,9 +94,9 @@ void pl_guards_start(const pl_guards *m, const real *x, pl_contact *c, real *wor
     at = instant_of(m, work, c, (pl_crossing *)0, work + WORDS * m->size);
     follow(m, &at, 1);
     hold_first(m, &at);
-    resolve(m, &at, 0);
+    resolve_all(m, &at, 0);
     decide(m, at.x, c, at.work);
-    resolve(m, &at, 0);
+    resolve_all(m, &at, 0);
 }
 
 /* ---- a piece ---- */
@@ -90,7 +109,7 @@ static int stays_event_free(const pl_guards *m, const pl_contact *c, const real 
     for (i = 0; i < n; i++) {
         work[i] = magnitude(x[i]);
     }
-    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+    for (k = first_guard(m, c->region); k < last_guard(m, c->region); k++) {
         const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
         real from, to, off, leaving, arriving;
         from = dot(n, m->guard_row + at, x);
@@ -117,7 +136,7 @@ static int stays_event_free_far(const pl_guards *m, const pl_contact *c, climb *
     const int n = m->size;
     int k;
     look_at_bend(at, n, matrix_of(m->A, m, c->matrix), x, bend, work);
-    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+    for (k = first_guard(m, c->region); k < last_guard(m, c->region); k++) {
         const int row = m->guard[k].row;
         const real *guard_row = m->guard_row + (ptrdiff_t)row * n;
         real from, to, off;
@@ -184,7 +203,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
     }
     f.degree = m->degree;
     f.coefficient = e + terms;
-    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+    for (k = first_guard(m, region); k < last_guard(m, region); k++) {
         const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
         real s, next;
         int has_left;
@@ -212,7 +231,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
 /* ---- a step ---- */
 
 #define limited shortened
-#define hold(m, at, y, work) assign(m, (m)->hold[(at)->c->region], y, work)
+#define hold(m, at, y, work) assign(m, hold_in(m, (at)->c->region), y, work)
 
 static int is_event_free(const pl_guards *m, const instant *at, climb *up, const real *y, real *bend, real *work)
 {
@@ -243,7 +262,7 @@ static int pass(const pl_guards *m, instant *at, const event *e, real time)
         acted = apply_impacts(m, at, g->impact);
         follow(m, at, 0);
     }
-    resolve(m, at, 1);
+    resolve_all(m, at, 1);
     come_to_rest(m, at, acted);
     keep(m, at);
     if (!chain->full) {
@@ -257,7 +276,7 @@ static void decide_anew(const pl_guards *m, instant *at, int jumped)
 {
     follow(m, at, jumped);
     (void)apply_impacts(m, at, -1);
-    resolve(m, at, 0);
+    resolve_all(m, at, 0);
     keep(m, at);
 }
 
@@ -272,7 +291,7 @@ static void take_up(const pl_guards *m, instant *at, real time)
 /* Whether what is held is where it is held.  work: WORDS */
 static int is_in_place(const pl_guards *m, const pl_contact *c, const real *x, real *work)
 {
-    const int n = m->size, set = m->hold[c->region];
+    const int n = m->size, set = hold_in(m, c->region);
     int i, k;
     for (k = set < 0 ? 0 : m->set[set]; set >= 0 && k < m->set[set + 1]; k++) {
         value_of(n, m->value, k, x, work);
@@ -293,7 +312,7 @@ static int is_taken_up(const pl_guards *m, const pl_contact *c, const real *x, r
     if (!is_in_place(m, c, x, work)) {
         return 0;
     }
-    for (k = m->first[c->region]; k < m->first[c->region + 1]; k++) {
+    for (k = first_guard(m, c->region); k < last_guard(m, c->region); k++) {
         if (!(pull_of(m, k, x) < 0)) {
             return 0;
         }
@@ -308,6 +327,7 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     SET_VARIATION(at);
     at.time = time;
     c->crossings = 0;
+    enter_again(m, c);
     decide_anew(m, &at, 1);
 }
 
@@ -337,7 +357,7 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
                        real *work AND_VARIATION)
 {
     instant at = instant_of(m, x, c, crossing, work);
-    const int holds = m->hold[c->region] >= 0;
+    const int holds = hold_in(m, c->region) >= 0;
     SET_VARIATION(at);
     c->crossings = 0;
     enter_again(m, c);

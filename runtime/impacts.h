@@ -16,6 +16,24 @@ enum { MOST = 6 };
 
 /* ---- regions ---- */
 
+/* The guards of a region are from the first to before the last; the set that it holds, -1: none */
+static int first_guard(const pl_guards *m, int region)
+{
+    return m->cached != NULL ? matrix_in(m, region) * m->cached->guards->most : m->first[region];
+}
+
+static int last_guard(const pl_guards *m, int region)
+{
+    const int slot = m->cached != NULL ? matrix_in(m, region) : -1;
+    return slot >= 0 ? slot * m->cached->guards->most + m->cached->guards->count[slot] : m->first[region + 1];
+}
+
+static int hold_in(const pl_guards *m, int region)
+{
+    const int slot = m->cached != NULL ? matrix_in(m, region) : -1;
+    return slot < 0 ? m->hold[region] : m->set[2 * slot] < m->set[2 * slot + 1] ? 2 * slot : -1;
+}
+
 /* x[state] = value . x, all of a set from the same x */
 static void assign(const pl_guards *m, int set, real *x, real *work)
 {
@@ -134,7 +152,7 @@ static void miss(const pl_guards *m, const instant *at, int k, const real *e)
 static void vary_held(const pl_guards *m, instant *at)
 {
     if (at->v != NULL) {
-        vary_set(m, at, m->hold[at->c->region]);
+        vary_set(m, at, hold_in(m, at->c->region));
     }
 }
 
@@ -260,8 +278,8 @@ static int can_be(const pl_guards *m, const instant *at)
 
 static void keep(const pl_guards *m, instant *at)
 {
-    VARIED(vary_set(m, at, m->hold[at->c->region]);)
-    assign(m, m->hold[at->c->region], at->x, at->work);
+    VARIED(vary_set(m, at, hold_in(m, at->c->region));)
+    assign(m, hold_in(m, at->c->region), at->x, at->work);
 }
 
 /* ---- the list ---- */
@@ -441,7 +459,7 @@ static int find_resting(const pl_guards *m, const instant *at, resting *found)
     int count = 0, k;
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, at->c->region, &w); leave(&w)) {
-        for (k = 1; k < w.breaks; k++) {
+        for (k = 1; k < w.breaks && (at->only < 0 || at->only == w.i); k++) {
             if (w.at[k] - w.at[k - 1] > 0 || w.interval < k - 1 || w.interval > k + 1 || count == MOST) {
                 continue;
             }
@@ -479,7 +497,7 @@ static int rises(const pl_guards *m, int region, int k, const real *x, real *wor
 static int holds_in(const pl_guards *m, instant *at, int region, int expression)
 {
     int k;
-    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+    for (k = first_guard(m, region); k < last_guard(m, region); k++) {
         const real pull = m->guard[k].expression == expression ? pull_of(m, k, at->x) : -1;
         if (pull > 0 || (pull >= 0 && rises(m, region, k, at->x, at->work))) {
             return 0;
@@ -497,7 +515,7 @@ static int is_let_go(const pl_guards *m, int region, int expression, int side, c
     if (matrix_in(m, stuck) < 0) {
         return 0;
     }
-    for (k = m->first[stuck]; k < m->first[stuck + 1]; k++) {
+    for (k = first_guard(m, stuck); k < last_guard(m, stuck); k++) {
         if (m->guard[k].expression == expression && m->guard[k].leads * side > 0 && !(pull_of(m, k, x) > 0) &&
             !(pull_of(m, k, x) < 0) && rises(m, stuck, k, x, work)) {
             return 1;
@@ -523,7 +541,7 @@ static int is_pressed(const pl_guards *m, const instant *at, int impact)
 {
     const int region = at->c->region;
     int k, any = 0;
-    for (k = m->first[region]; k < m->first[region + 1]; k++) {
+    for (k = first_guard(m, region); k < last_guard(m, region); k++) {
         if (m->guard[k].expression == m->impact[impact].expression) {
             if (!(pull_of(m, k, at->x) < 0)) {
                 return 0;

@@ -155,6 +155,23 @@ typedef struct pl_entries {
 
 /* Regions whose matrices are made when they are met, and kept in slots: the number of a region's A is that of its slot.
  * A is that of the region with the lowest interval of each switching function, and what the interval of each adds. */
+typedef struct pl_cached_guards {
+    int most, holds;    /* guards, and assignments, of a region at most */
+    /* Of the lowest region and of those beside it, as pl_guards has them of all; owner: of each assignment its
+     * switching function.  A region has the guards of each switching function, and what it holds, in its interval. */
+    const int *first;
+    const pl_guard *guard;
+    const PL_REAL *limit, *row, *amplitude;
+    const int *hold, *set, *state, *owner;
+    const PL_REAL *value;
+    /* Of each slot, as pl_guards reads them; `most` guards and rows, two sets, `holds` assignments of each */
+    int *count;
+    pl_guard *own_guard;
+    PL_REAL *own_limit, *own_row, *tangent, *chord_error, *cubic_error, *own_amplitude, *reach;
+    int *own_set, *own_state;
+    PL_REAL *own_value;
+} pl_cached_guards;
+
 typedef struct pl_cached {
     int (*matrix)(struct pl_cached *m, int region); /* pl_cached_matrix */
     int size, switches, slots;
@@ -173,6 +190,8 @@ typedef struct pl_cached {
     int *halvings, *spacing;
     PL_REAL *A, *Phi, *pieces, *tangent, *chord_error, *cubic_error, *reach;
     pl_two *work;       /* PL_CACHED_WORK(size, switches) entries */
+    int pinned;         /* the slot in use, -1: none */
+    const pl_cached_guards *guards; /* NULL: crossings alone */
 } pl_cached;
 
 typedef struct pl_switching {

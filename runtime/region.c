@@ -394,6 +394,93 @@ static void sum_region(const pl_cached *m, int region, pl_two *A)
     }
 }
 
+/* ---- their guards, and what they hold ---- */
+
+/* Of a switching function in an interval: the guards of a region beside the lowest that are its */
+static int take_guards(const pl_cached *m, int from, int function, int first, int count)
+{
+    const pl_cached_guards *const g = m->guards;
+    const int n = m->size;
+    int i, j;
+    for (i = g->first[from]; i < g->first[from + 1]; i++) {
+        const int to = first + count, row = g->guard[i].row;
+        if (g->guard[i].expression != function) {
+            continue;
+        }
+        g->own_guard[to] = g->guard[i];
+        g->own_guard[to].row = to;
+        g->own_limit[to] = g->limit[i];
+        g->own_amplitude[to] = g->amplitude[row];
+        for (j = 0; j < n; j++) {
+            g->own_row[(ptrdiff_t)to * n + j] = g->row[(ptrdiff_t)row * n + j];
+        }
+        count++;
+    }
+    return count;
+}
+
+/* Likewise its assignments; how many there are then */
+static int take_holds(const pl_cached *m, int from, int function, int first, int count)
+{
+    const pl_cached_guards *const g = m->guards;
+    const int n = m->size, set = g->hold[from];
+    int i, j;
+    for (i = set < 0 ? 0 : g->set[set]; set >= 0 && i < g->set[set + 1]; i++) {
+        if (g->owner[i] != function) {
+            continue;
+        }
+        g->own_state[first + count] = g->state[i];
+        for (j = 0; j < n; j++) {
+            g->own_value[(ptrdiff_t)(first + count) * n + j] = g->value[(ptrdiff_t)i * n + j];
+        }
+        count++;
+    }
+    return count;
+}
+
+/* pl_region_reach has the rows of one guard behind those of another; each gets the room that it has. */
+static void reach_guards(const pl_cached *m, int slot, int first, int count)
+{
+    const pl_cached_guards *const g = m->guards;
+    const int n = m->size, rungs = (m->halvings[slot] - 1) / m->spacing[slot] + 1;
+    real *const reach = g->reach + (ptrdiff_t)first * m->rungs * n;
+    int i, j;
+    pl_region_reach(n, m->h, m->halvings[slot], m->spacing[slot], m->A + (ptrdiff_t)slot * n * n, count,
+                    g->own_row + (ptrdiff_t)first * n, reach, (real *)(void *)m->work);
+    for (i = count - 1; i > 0; i--) {
+        for (j = rungs * n - 1; j >= 0; j--) {
+            reach[(ptrdiff_t)i * m->rungs * n + j] = reach[(ptrdiff_t)i * rungs * n + j];
+        }
+    }
+}
+
+static void make_guards(const pl_cached *m, int region, int slot)
+{
+    const pl_cached_guards *const g = m->guards;
+    const int n = m->size, first = slot * g->most, held = slot * g->holds;
+    const ptrdiff_t rows = (ptrdiff_t)first * n;
+    int rest = region % m->regions, segment = region / m->regions, beside = 1, lowest, count = 0, holds = 0, i;
+    for (i = 0; i < m->switches; i++) {
+        beside += m->breaks[i];
+    }
+    lowest = segment * beside;
+    for (i = 0, beside = lowest; i < m->switches; beside += m->breaks[i++]) {
+        const int interval = rest % (m->breaks[i] + 1), from = interval > 0 ? beside + interval : lowest;
+        rest /= m->breaks[i] + 1;
+        count = take_guards(m, from, i, first, count);
+        holds = take_holds(m, from, i, held, holds);
+    }
+    g->count[slot] = count;
+    g->own_set[2 * slot] = held;
+    g->own_set[2 * slot + 1] = held + holds;
+    pl_region_bounds(n, m->h / (real)((uint32_t)1 << m->halvings[slot]), m->A + (ptrdiff_t)slot * n * n, count,
+                     g->own_row + rows, g->tangent + rows, g->chord_error + rows, g->cubic_error + rows,
+                     (real *)(void *)m->work);
+    if (m->halvings[slot] > 0) {
+        reach_guards(m, slot, first, count);
+    }
+}
+
 static void make_region(const pl_cached *m, int region, int slot)
 {
     const int n = m->size;
@@ -411,6 +498,12 @@ static void make_region(const pl_cached *m, int region, int slot)
             A[i] = m->Phi[cells + i] = none / none;
         }
     }
+    if (m->guards != NULL) { /* of switching functions slopes alone are read */
+        real *const spare = work + PL_BOUNDS_WORK(n), d = m->h / (real)((uint32_t)1 << m->halvings[slot]);
+        pl_region_bounds(n, d, A, m->switches, row, m->tangent + rows, spare, spare + m->switches * n, work);
+        make_guards(m, region, slot);
+        return;
+    }
     pl_region_bounds(n, m->h / (real)((uint32_t)1 << m->halvings[slot]), A, m->switches, row, m->tangent + rows,
                      m->chord_error + rows, m->cubic_error + rows, work);
     pl_region_reach(n, m->h, m->halvings[slot], m->spacing[slot], A, m->switches, row,
@@ -419,10 +512,10 @@ static void make_region(const pl_cached *m, int region, int slot)
 
 int pl_cached_matrix(pl_cached *m, int region)
 {
-    int i, oldest = 0;
+    int i, oldest = m->pinned == 0;
     region += m->first;
     for (i = 0; i < m->slots && m->slot[i].region != region; i++) {
-        oldest = m->slot[i].used < m->slot[oldest].used ? i : oldest;
+        oldest = m->slot[i].used < m->slot[oldest].used && i != m->pinned ? i : oldest;
     }
     if (i == m->slots) {
         i = oldest;

@@ -24,6 +24,7 @@ typedef struct instant {
     /* Of contacts: */
     real time;             /* after the start of the step [s] */
     int before;            /* the region before what happens now */
+    int only;              /* the one switching function that is looked at; -1: all */
     pl_chain chain;
     VARIED(pl_variation *v;) /* NULL: no derivatives are asked for */
 } instant;
@@ -286,6 +287,9 @@ static void enter(const searched *m, pl_contact *c, int region)
     c->region = region;
     if (matrix >= 0) {
         c->matrix = matrix;
+    }
+    if (m->cached != NULL) {
+        m->cached->pinned = matrix;
     }
 }
 

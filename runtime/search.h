@@ -42,7 +42,12 @@
 #if PL_SLOTS > 0
 #define PL_KEPT(name) own->cached.name
 #define PL_MATRIX (const int *)0
-#define PL_CACHE(search, first) pl_cached cached = PL(cached)(s, first); (search).cached = &cached;
+#define PL_CACHED(search, first, g) pl_cached cached = PL(cached)(s, first, g); (search).cached = &cached;
+#if PL_GUARDS
+#define PL_CACHE(search, first) const pl_cached_guards ended = PL(cached_guards)(s); PL_CACHED(search, first, &ended)
+#else
+#define PL_CACHE(search, first) PL_CACHED(search, first, (const pl_cached_guards *)0)
+#endif
 #else
 #define PL_KEPT(name) PL_OF(name)
 #define PL_MATRIX PL(matrix)
@@ -65,7 +70,15 @@
 
 #define PL_MATRICES PL_MATRIX, PL_KEPT(halvings), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_LADDER
 
-#if PL_GUARDS
+#if PL_GUARDS && PL_SLOTS > 0
+#define PL_GUARD_ERRORS PL_KEPT(guard_chord_error)[0], PL_KEPT(guard_cubic_error)[0]
+#define PL_GUARD_TABLES PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_GUARD_ERRORS
+#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_KEPT(guard_amplitude)
+#define PL_LISTS (const int *)0, PL_KEPT(guard), PL_KEPT(limit), (const int *)0
+#define PL_ENDED PL_KEPT(tangent)[0][0], PL_LISTS, PL_GUARD_TABLES, PL_AMPLITUDES
+#define PL_SET PL_KEPT(sets), PL_KEPT(held), PL_KEPT(value)[0]
+#define PL_BOUNDS PL_ENDED, PL_SET, 0, PL(impact), PL(speed)[0], PL(retreat)[0]
+#elif PL_GUARDS
 #define PL_GUARD_ERRORS PL_OF(guard_chord_error)[0], PL_OF(guard_cubic_error)[0]
 #define PL_GUARD_TABLES PL_OF(guard_row)[0], PL_OF(guard_tangent)[0], PL_GUARD_ERRORS
 #define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_OF(guard_amplitude)
@@ -93,14 +106,31 @@
 #define PL_ROWS_OF_ALL PL(row)[0]
 #endif
 
-static pl_cached PL(cached)(const PL_TYPE *s, int first)
+#if PL_GUARDS
+#define PL_FUNCTION_BOUNDS (real *)0, (real *)0, (real *)0
+static pl_cached_guards PL(cached_guards)(const PL_TYPE *s)
+{
+    struct PL_TYPE *const own = (struct PL_TYPE *)s;
+    const pl_cached_guards g = {
+        PL_MOST_GUARDS, PL_MOST_HOLDS, PL(first), PL(guard), PL(limit), PL(guard_row)[0], PL(guard_amplitude),
+        PL(holding), PL(sets), PL(held), PL(owner), PL(value)[0], PL_KEPT(count), PL_KEPT(guard), PL_KEPT(limit),
+        PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_KEPT(guard_chord_error)[0], PL_KEPT(guard_cubic_error)[0],
+        PL_KEPT(guard_amplitude), PL_KEPT(bend)[0], PL_KEPT(sets), PL_KEPT(held), PL_KEPT(value)[0]
+    };
+    return g;
+}
+#else
+#define PL_FUNCTION_BOUNDS PL_KEPT(chord_error)[0][0], PL_KEPT(cubic_error)[0][0], PL_KEPT(bend)[0]
+#endif
+
+static pl_cached PL(cached)(const PL_TYPE *s, int first, const pl_cached_guards *g)
 {
     struct PL_TYPE *const own = (struct PL_TYPE *)s;
     const pl_cached c = {
         pl_cached_matrix, PL_SIZE, PL_SWITCHING_FUNCTIONS, PL_SLOTS, PL_RUNGS, PL_HALVINGS, PL_REGIONS, first, PL_H,
         PL(breaks), PL_ROWS_OF_ALL, PL(sum), PL(constant), PL_KEPT(slot), &PL_KEPT(clock), PL_KEPT(halvings),
         PL_KEPT(spacing), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_KEPT(rungs)[0][0], PL_KEPT(tangent)[0][0],
-        PL_KEPT(chord_error)[0][0], PL_KEPT(cubic_error)[0][0], PL_KEPT(bend)[0], PL_KEPT(work)
+        PL_FUNCTION_BOUNDS, PL_KEPT(work), -1, g
     };
     return c;
 }
@@ -144,7 +174,7 @@ static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VEC
 #if PL_SLOTS == 0
     here.matrix += segment * PL_REGIONS;
 #endif
-#if PL_GUARDS
+#if PL_GUARDS && PL_SLOTS == 0
     here.first += segment * PL_REGIONS;
     here.hold += segment * PL_REGIONS;
 #endif
@@ -250,6 +280,9 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         PL(next_segment)(s, x, contact, work);
 #if PL_GUARDS
         here = PL(switching)(s, segment + 1);
+#if PL_SLOTS > 0
+        here.cached = &cached;
+#endif
         here.max_events -= count;
         PL_CHANGE(&here, done, x, contact, crossing + count, work PL_V);
         count += contact->crossings;

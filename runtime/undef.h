@@ -29,6 +29,11 @@
 #undef PL_OPERATORS
 #undef PL_BARE
 #undef PL_CACHE
+#undef PL_CACHED
+#undef PL_FUNCTION_BOUNDS
+#undef PL_LISTS
+#undef PL_MOST_GUARDS
+#undef PL_MOST_HOLDS
 #undef PL_KEPT
 #undef PL_MATRIX
 #undef PL_ROWS_OF_ALL

@@ -15,6 +15,15 @@ static const struct output *output_of_row(const struct model *model, int row)
 	return NULL;
 }
 
+static bool is_read_as_row(const struct emitter *e, const struct output *output)
+{
+	const struct model *model = e->model;
+	bool of_regions = is_tuned_output(e, output);
+	for (int k = 0; model->equations.highest && k < model->n; k++)
+		of_regions = of_regions || (output == model->equations.highest[k] && is_row_of_regions(model, k));
+	return !output->left && !of_regions;
+}
+
 /* How many rows the table of factors needs: up to the last in which one changes */
 static int changing_rows(const struct emitter *e)
 {
@@ -22,7 +31,7 @@ static int changing_rows(const struct emitter *e)
 	const struct output *output;
 	int rows = 0;
 	for (int o = 0; (output = output_of_row(e->model, o)) != NULL; o++)
-		for (int l = 0; l < system->loads && !is_tuned_output(e, output); l++)
+		for (int l = 0; l < system->loads && is_read_as_row(e, output); l++)
 			for (int k = 0; k < system->load[l].columns; k++)
 				if (differs_in_time(direct_factors(e->step, output, l, k), system->segments))
 					rows = o < e->model->outputs ? e->model->outputs : o + 1;
@@ -78,9 +87,8 @@ static bool is_wanted(const struct emitter *e, int output)
 /* Of coordinate k: in each region another row where a contact may rest */
 static tape_ref highest_derivative(const struct emitter *e, struct tape *t, int k)
 {
-	const struct switching *s = e->model->switching;
-	return s && s->highest && s->highest[k] >= 0 ? tape_operand(t, TAPE_FRICTION, s->highest[k], 0)
-						     : tape_of_row(t, e->step, e->model->equations.highest[k]);
+	return is_row_of_regions(e->model, k) ? tape_operand(t, TAPE_FRICTION, e->model->switching->highest[k], 0)
+					      : tape_of_row(t, e->step, e->model->equations.highest[k]);
 }
 
 /* Their values; first the highest derivatives that they read, as locals */

@@ -35,6 +35,7 @@ const char *samples_of_step(const struct emitter *e);
 const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left);
 const char *remainder_of_outputs(const struct emitter *e);
 /* Does an output read an acceleration that the remainder acts on? */
+bool is_row_of_regions(const struct model *model, int coord); /* its highest derivative, where a contact may rest */
 bool reads_force_columns(const struct model *model);
 void emit_remainder(const struct emitter *e);                      /* and of a schedule the choice of an operator */
 

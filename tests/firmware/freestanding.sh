@@ -62,8 +62,9 @@ builds() {
         awk '$2 ~ /^\.(data|bss|tdata|tbss)/ && $3 !~ /^0+$/ { print "variables in " $2 ", bytes: 0x" $3 }' "$work/code"
         grep -v -P '\tstatic$' "$work/$2.su"
         case $2 in
-            # these call the model, which makes its series anew, or says its forces: of that the stack is its own
-            events | eventsf | cut | cutf) ;;
+            # these call the model, which makes its series anew, or says its forces: of that the stack is its own; or
+            # they ask for a region's matrix, where a model keeps some, so that others need no region.c
+            events | eventsf | cut | cutf | crossings* | guards*) ;;
             *) grep -o 'sourcename: "[^"]*" targetname: "__indirect_call"' "$work/$2.ci" ;;
         esac
         if [ "$3" = float ]; then

@@ -10,7 +10,7 @@ plrun=$(realpath "$2")
 root=$3
 . "${0%/*}/../tap.sh"
 
-# stops NAME NUMBER TERM [LINE ...]: a chain of so many masses, each with a stop by that term of X and its gap G
+# stops NAME NUMBER TERM [LINE ...]: a chain of masses, each with that term of X and its gap G, or with a slider Z
 stops() {
     name=$1 number=$2 term=$3
     shift 3
@@ -22,13 +22,17 @@ stops() {
                 sum = "800*x" i " + 1.2*x" i "\047"
                 sum = sum (i > 1 ? " - 400*x" i - 1 " - 0.6*x" i - 1 "\047" : "")
                 own = term
+                if (gsub(/Z/, "z" i, own)) {
+                    print "coord z" i
+                    slides = slides "friction(z" i "\047, " 1 + i / 50 ") + 900*(z" i " - x" i ") = 0\n"
+                }
                 gsub(/X/, "x" i, own)
                 gsub(/G/, "(g*" 1 + i / 100 ")", own)
-                of[i] = sum " + 5000*" own " = " (i == 1 ? "u" : i == 2 ? "(t < 0.213 ? 3*cos(7*t) : 1)" : 0)
+                of[i] = sum " + " own " = " (i == 1 ? "u" : i == 2 ? "(t < 0.213 ? 3*cos(7*t) : 1)" : 0)
             }
             for (i = 1; i <= n; i++)
                 print "x" i "\047\047 + " (i < n ? "-400*x" i + 1 " - 0.6*x" i + 1 "\047 + " : "") of[i]
-            print "step 0.01" }'
+            printf "%sstep 0.01\n", slides }'
         printf '%s\n' "$@"
     } >"$name.spec"
 }
@@ -52,19 +56,32 @@ near() {
     result $met "$4"
 }
 
-one='max(X - G, 0)' two='deadzone(X, -g, G)'
+one='5000*max(X - G, 0)' two='5000*deadzone(X, -g, G)' rubs="friction(X' - 0.1, 150*G, 170*G)" slides='900*(X - Z)'
 stops tables 5 "$one" && run tables 1
 stops few 5 "$one" 'regions cached 3' && run few 1
 near tables few 2e-13 '5 stops, 3 matrices kept: as by tables of all 32 regions'
 stops tables 4 "$two" && run tables 1
 stops few 4 "$two" 'regions cached 4' && run few 1
 near tables few 2e-13 '4 stops on both sides, 4 matrices kept: as by tables of all 81 regions'
+stops tables 4 "$rubs" && run tables 1
+stops few 4 "$rubs" 'regions cached 8' && run few 1
+near tables few 2e-13 '4 masses on belts, 8 matrices kept: as by tables of all 81 regions'
+stops tables 4 "$slides" && run tables 1
+stops few 4 "$slides" 'regions cached 8' && run few 1
+near tables few 2e-13 '4 sliders without mass, 8 matrices kept: as by tables of all 81 regions'
+stops many 12 "$rubs" && run many 0.3
+stops series 12 "$rubs" 'scheme taylor' 'tolerance 1e-14' && run series 0.3
+near many series 2e-12 '12 masses on belts: as by a Taylor series from event to event'
 stops many 12 "$one" && run many 0.5
 stops series 12 "$one" 'scheme taylor' 'tolerance 1e-14' && run series 0.5
 near many series 2e-12 '12 stops, by default: as by a Taylor series from crossing to crossing'
 stops many 12 "$one" 'regions cached 2' && mv many.csv kept.csv && run many 0.5
 [ -s kept.csv ] && cmp many.csv kept.csv >log
 result $? 'the bits are the same whatever is kept'
+stops many 12 "$slides" && size=$("$plgen" many.spec | wc -c)
+echo "$size bytes, 307200 at most expected" >log
+[ "$size" -gt 10000 ] && [ "$size" -le 307200 ]
+result $? '12 sliders, 531441 regions: less than 300 KB of C'
 stops many 12 "$two" && size=$("$plgen" many.spec | wc -c)
 echo "$size bytes, 307200 at most expected" >log
 [ "$size" -gt 10000 ] && [ "$size" -le 307200 ]

@@ -4,6 +4,7 @@
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"
+#include "model/regions/regions.h"
 #include "step/exponential/weights.h"
 
 #include <string.h>
@@ -32,14 +33,19 @@ static bool reads_ramp(const struct emitter *e, const struct reads *r)
 	return false;
 }
 
+bool is_row_of_regions(const struct model *model, int coord)
+{
+	return model->switching && model->switching->highest && model->switching->highest[coord] >= 0;
+}
+
 static bool reads_force_column(const struct model *model, int force_column)
 {
 	bool any = false;
-	for (int i = 0; i < model->outputs + model->n; i++) {
-		const struct output *output =
-			i < model->outputs ? &model->output[i] : model->equations.highest[i - model->outputs];
-		any = any || (output && mpq_sgn(output->force_column[force_column]) != 0);
-	}
+	for (int i = 0; i < model->outputs; i++)
+		any = any || (!model->output[i].left && mpq_sgn(model->output[i].force_column[force_column]) != 0);
+	for (int k = 0; k < model->n; k++)
+		any = any || (model->equations.highest[k] && !is_row_of_regions(model, k) &&
+			      mpq_sgn(model->equations.highest[k]->force_column[force_column]) != 0);
 	return any;
 }
 

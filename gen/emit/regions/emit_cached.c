@@ -3,8 +3,10 @@
  * and the place for what is made of it. */
 #include "inner.h"
 #include "emit/text.h"
+#include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
 #include "model/regions/switching_functions.h"
+#include "step/regions/guards.h"
 #include "step/regions/regions.h"
 
 /* ---- what a region's A is the sum of ---- */
@@ -96,17 +98,43 @@ static void emit_sums(const struct emitter *e)
 	close_table(e);
 }
 
-void emit_cached(const struct emitter *e)
+static void put_places(const struct emitter *e, const char *name, const char *note, int count, int apart)
+{
+	SCRATCH int *first = ARRAY(int, count);
+	for (int k = 0; k < count; k++)
+		first[k] = k * apart;
+	put_wholes(e, false, name, note, count, first);
+}
+
+void emit_cached(const struct emitter *e, const struct guards *g)
 {
 	const int slots = slots_of(e->step), rungs = room_for_rungs(e->step);
-	SCRATCH int *first = ARRAY(int, slots);
-	for (int k = 0; k < slots; k++)
-		first[k] = k * rungs;
+	int guards = 1, holds;
 	emit_sums(e);
-	put_wholes(e, false, "first_rung", "Number of the first, shortest, piece of each slot in rungs", slots, first);
+	put_places(e, "first_rung", "Number of the first, shortest, piece of each slot in rungs", slots, rungs);
+	if (g) {
+		most_in_region(e->step, &guards, &holds);
+		emit_guards_beside(e, g);
+	}
+	put_places(e, "bend_rung", "Number of the first row of bend for each guard function", g ? slots * guards : 1,
+		   rungs);
 }
 
 /* ---- where they are kept ---- */
+
+static void emit_guard_members(const struct emitter *e)
+{
+	const int size = e->step->layout.size, slots = slots_of(e->step), rungs = room_for_rungs(e->step);
+	int guards, holds;
+	most_in_region(e->step, &guards, &holds);
+	const int rows = slots * guards, values = slots * (holds > 0 ? holds : 1);
+	say(e, "        pl_guard guard[%d];\n"
+	       "        int count[%d], sets[%d], held[%d];\n"
+	       "        double limit[%d], guard_amplitude[%d], guard_row[%d][%d], guard_tangent[%d][%d];\n",
+	    rows, slots, 2 * slots, values, rows, rows, rows, size, rows, size);
+	say(e, "        double guard_chord_error[%d][%d], guard_cubic_error[%d][%d], bend[%d][%d], value[%d][%d];\n",
+	    rows, size, rows, size, rows * rungs, size, values, size);
+}
 
 void emit_cached_member(const struct emitter *e)
 {
@@ -120,11 +148,16 @@ void emit_cached_member(const struct emitter *e)
 	       "        int halvings[%d], spacing[%d];\n"
 	       "        double slopes[%d][%d][%d], pieces[%d][%d][%d], rungs[%d][%d][%d];\n",
 	    slots, slots, slots, slots, size, size, slots, size, size, slots * rungs, size + 1, size);
-	say(e, "        double tangent[%d][%d][%d], chord_error[%d][%d][%d], cubic_error[%d][%d][%d];\n",
-	    slots, s->functions, size, slots, s->functions, size, slots, s->functions, size);
-	say(e, "        double bend[%d][%d];\n"
-	       "        pl_two work[PL_CACHED_WORK(%d, %d)];\n"
-	       "    } cached;\n", slots * rungs * s->functions, size, size, s->functions);
+	say(e, "        double tangent[%d][%d][%d];\n", slots, s->functions, size);
+	int rows = s->functions, holds;
+	if (has_events(s)) {
+		emit_guard_members(e);
+		most_in_region(e->step, &rows, &holds);
+	} else
+		say(e, "        double chord_error[%d][%d][%d], cubic_error[%d][%d][%d], bend[%d][%d];\n", slots,
+		    s->functions, size, slots, s->functions, size, slots * rungs * s->functions, size);
+	say(e, "        pl_two work[PL_CACHED_WORK(%d, %d)];\n"
+	       "    } cached;\n", size, rows);
 }
 
 void emit_cached_start(const struct emitter *e)
@@ -139,4 +172,10 @@ void emit_cached_macros(const struct emitter *e)
 	say_macro(e, "SLOTS", integer_text(slots_of(e->step)));
 	say_macro(e, "RUNGS", integer_text(room_for_rungs(e->step)));
 	say_macro(e, "HALVINGS", integer_text(LIMIT_PIECES));
+	if (!has_events(e->model->switching))
+		return;
+	int guards, holds;
+	most_in_region(e->step, &guards, &holds);
+	say_macro(e, "MOST_GUARDS", integer_text(guards));
+	say_macro(e, "MOST_HOLDS", integer_text(holds));
 }

@@ -148,6 +148,23 @@ void emit_guards(const struct emitter *e, const struct guards *g)
 	emit_assignments(e, g);
 }
 
+void emit_guards_beside(const struct emitter *e, const struct guards *g)
+{
+	const struct switching *s = e->model->switching;
+	const int count = g->assignments > 0 ? g->assignments : 1;
+	SCRATCH int *owner = ARRAY(int, (size_t)count);
+	for (int i = 0; i < g->assignments; i++)
+		owner[i] = owner_of_hold(s, g->assignment[i].state);
+	emit_guards(e, g);
+	put_wholes(e, false, "owner", "The switching function by which each assignment holds", count, owner);
+	emit_limits(e, g);
+	put_matrix(e, "guard_row", "Guard functions g = guard_row . x, in the lowest region and those beside it: what "
+		   "one switching function does in its interval", g->rows, e->step->layout.size, g->row,
+		   guard_notes(e, g));
+	emit_values(e, g);
+	emit_impacts(e, g);
+}
+
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 {
 	emit_limits(e, g);

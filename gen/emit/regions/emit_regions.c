@@ -175,7 +175,7 @@ void emit_regions(const struct emitter *e)
 		emit_rows(e, &pieces);
 	emit_breaks(e, &pieces, false);
 	if (regions_of(e)->cached) {
-		emit_cached(e);
+		emit_cached(e, g);
 		emit_search(e, cached_ladder);
 		say_include(e, "search.h");
 		return;

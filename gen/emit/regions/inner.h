@@ -67,6 +67,8 @@ const char *start_of_search(const struct emitter *part);          /* the region 
 void emit_friction_forces(const struct emitter *e);               /* what friction carries, for outputs */
 /* of dry friction and impacts in regions: their lists, numbers, descriptor */
 void emit_guards(const struct emitter *e, const struct guards *guards);
+/* the same where the target makes matrices */
+void emit_guards_beside(const struct emitter *e, const struct guards *guards);
 void emit_numbers_of_guards(const struct emitter *e, const struct guards *guards);
 /* numbers of regions: a table of the file, or where params are tunable a member of NAME_coeffs */
 void open_table(const struct emitter *e, const char *type, const char *name, const char *shape, const char *note);
@@ -107,8 +109,8 @@ const char **listed_twice(int count, const char *const *text);
 /* emit_cached.c: of regions whose matrices the target makes: what these are sums of, where they are kept, none of them
  * yet, what search.h asks for */
 #define cached_ladder \
-	"{PL(first_rung), PL_KEPT(spacing), PL_KEPT(rungs)[0][0], PL_KEPT(bend)[0], PL(first_rung)}"
-void emit_cached(const struct emitter *e);
+	"{PL(first_rung), PL_KEPT(spacing), PL_KEPT(rungs)[0][0], PL_KEPT(bend)[0], PL(bend_rung)}"
+void emit_cached(const struct emitter *e, const struct guards *guards);      /* NULL: crossings alone */
 void emit_cached_member(const struct emitter *e);
 void emit_cached_start(const struct emitter *e);
 void emit_cached_macros(const struct emitter *e);

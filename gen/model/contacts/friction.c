@@ -353,7 +353,6 @@ static void solve_for_force(const struct switching *s, struct region *region, st
 static void add_releases(const struct switching *s, int index, const struct stuck *stuck)
 {
 	struct region *region = &s->region[index];
-	int stride = s->function[stuck->function].stride;
 	const struct form *up = NEW(struct form), *down = up;
 	if (stuck->impact) {                    /* it presses, and does not pull */
 		add_release(region, stuck->function, !stuck->impact_law->upward,
@@ -361,8 +360,8 @@ static void add_releases(const struct switching *s, int index, const struct stuc
 		return;
 	}
 	if (stuck->atom) {
-		up = s->region[index + stride].rest[stuck->atom->index];
-		down = s->region[index - stride].rest[stuck->atom->index];
+		up = s->region[region_above(s, index, stuck->function)].rest[stuck->atom->index];
+		down = s->region[region_below(s, index, stuck->function)].rest[stuck->atom->index];
 	}
 	const struct form *force = stuck->atom ? stuck->force : stuck->rate;
 	add_release(region, stuck->function, true, form_difference(force, up ? up : NEW(struct form)));

@@ -13,7 +13,6 @@
 int  find_switching_function(struct switching *s, int segment, const struct compared *what, mpq_ptr of, mpq_ptr at);
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_switching_functions(struct switching *s);
-int  region_above(const struct switching *s, int region, int function); /* one interval up; -1: it is not listed */
 bool share_function(const struct switching *a, const struct switching *b);
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
@@ -24,6 +23,7 @@ void remove_idle_breaks(struct switching *s);
 /* its index; apart: with no other's, though they are equal */
 int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
 int  count_candidates(struct switching *s);                 /* in one segment of time; strides of switching functions */
+void check_sum(const struct building *b, const struct switching *s);  /* of regions that are cached; refuses others */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
 _Noreturn void too_many(const struct switching *s);

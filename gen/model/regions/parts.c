@@ -383,6 +383,8 @@ static void build_full(struct building *b, struct switching *s)
 	if (has_events(s))
 		build_friction(b, s);
 	build_impact_rows(b, s);
+	if (s->cached)
+		check_sum(b, s);
 }
 
 void build_regions(struct building *b)

@@ -3,7 +3,7 @@
  * Motzkin). Whether forces jump with a velocity from one to the next. */
 #include "inner.h"
 #include "model/building.h"
-#include "model/contacts/contacts.h"
+#include "model/contacts/friction.h"
 #include "model/reads.h"
 
 static const struct node *last_term(const struct switching *s)
@@ -35,6 +35,149 @@ _Noreturn void refuse_cache(const struct building *b, const struct switching *s,
 		      "more regions than the limit of %d", LIMIT_REGIONS);
 	error(node->at, "without 'regions cached' all of them are in tables",
 	      "a region's matrix is no sum over switching functions: %s", why);
+}
+
+/* ---- whether a region is the sum of what each switching function does to the lowest one ---- */
+
+static const struct hold *hold_of_state(const struct region *region, int state)
+{
+	int k = region->holds - 1;
+	while (k >= 0 && region->hold[k].state != state)
+		k--;
+	return k < 0 ? NULL : &region->hold[k];
+}
+
+static bool holds_alike(const struct region *a, const struct region *b, int state)
+{
+	const struct hold *one = hold_of_state(a, state), *other = hold_of_state(b, state);
+	return !one || !other ? one == other : same_form(one->form, other->form);
+}
+
+/* The one switching function besides which a region differs from the lowest; -1: none */
+static int beside_by(const struct switching *s, int region)
+{
+	int e = s->functions - 1;
+	while (e >= 0 && interval_of(s, region, e) == 0)
+		e--;
+	return e;
+}
+
+int owner_of_hold(const struct switching *s, int state)
+{
+	int owner = -1;
+	for (int r = 0; r < s->regions; r++)
+		if (!holds_alike(&s->region[r], &s->region[r - r % regions_at_once(s)], state))
+			owner = beside_by(s, r);
+	return owner;
+}
+
+static bool same_row(const struct linear *a, const struct linear *b, int row)
+{
+	const size_t n = (size_t)a->n, at = (size_t)row * n;
+	bool same = rationals_equal(n, a->M + at, b->M + at) && rationals_equal(n, a->C + at, b->C + at) &&
+		    rationals_equal(n, a->K + at, b->K + at);
+	for (int l = 0; l < a->loads && same; l++)
+		for (int k = 0; k < a->load[l].columns && same; k++)
+			same = mpq_equal(a->load[l].force[k][row], b->load[l].force[k][row]);
+	for (int i = 0; i < 2 * a->inputs && same; i++)
+		same = mpq_equal(a->input[i / 2].force[i % 2][row], b->input[i / 2].force[i % 2][row]);
+	return same;
+}
+
+/* The factor of a coordinate's highest derivative in an equation */
+static mpq_srcptr leading_factor(const struct linear *system, int row, int coord)
+{
+	return (system->velocity[coord] >= 0 ? system->M : system->C)[row * system->n + coord];
+}
+
+/* Whether an equation has one highest derivative, which no other equation has */
+static bool has_own_inertia(const struct linear *system, int row)
+{
+	int found = 0, others = 0;
+	for (int j = 0; j < system->n; j++) {
+		if (mpq_sgn(leading_factor(system, row, j)) == 0)
+			continue;
+		found++;
+		for (int i = 0; i < system->n; i++)
+			others += i != row && mpq_sgn(leading_factor(system, i, j)) != 0;
+	}
+	return found == 1 && others == 0;
+}
+
+/* Of an equation that what sticks or slides puts another one in the place of */
+static void check_row(const struct building *b, const struct switching *s, int region, int row)
+{
+	const int by = beside_by(s, region), in_one = regions_at_once(s);
+	const struct node *node = s->function[by].node;
+	for (int r = 0; r < s->regions; r++) {
+		const struct linear *low = &s->system[s->region[r - r % in_one].system],
+				    *here = &s->system[s->region[r].system];
+		if (!has_own_inertia(here, row))
+			refuse_cache(b, s, node,
+				     "its equation has other highest derivatives, or these other equations");
+		if (r % in_one > 0 && beside_by(s, r) != by && !same_row(low, here, row))
+			refuse_cache(b, s, node, "its equation has other terms that switch");
+	}
+}
+
+static void check_held(const struct building *b, const struct switching *s, const struct region *region)
+{
+	const struct linear *system = s->system;
+	for (int k = 0; k < region->holds; k++) {
+		const struct form *form = region->hold[k].form;
+		const int owner = owner_of_hold(s, region->hold[k].state);
+		const struct node *node = s->function[owner < 0 ? 0 : owner].node;
+		if (owner < 0)
+			refuse_cache(b, s, node, "a state is held everywhere");
+		for (int i = 0; i < form->terms; i++) {
+			const struct basis *basis = &form->term[i].basis;
+			const int state = basis->kind != BASIS_COORD ? -1
+					  : basis->order	     ? system->velocity[basis->index] : basis->index;
+			if (state >= 0 && owner_of_hold(s, state) >= 0)
+				refuse_cache(b, s, node, "its place follows from what another one holds");
+		}
+	}
+	for (int j = 0; j < system->states; j++) {
+		int owners = 0;
+		for (int e = 0; e < s->functions; e++) {
+			bool differs = false;
+			for (int r = 0; r < s->regions; r++)
+				differs = differs || (beside_by(s, r) == e &&
+						      !holds_alike(&s->region[r],
+								   &s->region[r - r % regions_at_once(s)], j));
+			owners += differs;
+		}
+		if (owners > 1)
+			refuse_cache(b, s, s->function[0].node, "two switching functions hold one state");
+	}
+}
+
+/* Whether what it compares sticks or slides somewhere */
+static bool has_own_events(const struct switching *s, int function)
+{
+	bool any = false;
+	for (int r = 0; r < s->regions; r++)
+		for (int k = 0; k < s->region[r].releases; k++)
+			any = any || s->region[r].release[k].function == function;
+	return any;
+}
+
+/* Once their systems are built */
+void check_sum(const struct building *b, const struct switching *s)
+{
+	for (int r = 0; r < s->regions; r++) {
+		const struct region *here = &s->region[r], *low = &s->region[r - r % regions_at_once(s)];
+		if (!here->possible)
+			refuse_cache(b, s, s->function[0].node, "what sticks contradicts itself");
+		check_held(b, s, here);
+		for (int k = 0; k < s->rows && (here->releases > 0 || low->releases > 0); k++)
+			if (beside_by(s, r) >= 0 && has_own_events(s, beside_by(s, r)) &&
+			    !same_row(&s->system[low->system], &s->system[here->system], s->row[k]))
+				check_row(b, s, r, s->row[k]);
+	}
+	if (s->transmitted_forces > 0)
+		error(last_term(s)->at, NULL,
+		      "an output of what friction carries needs tables of regions, which are made on the target");
 }
 
 struct inequality { mpq_t *a; };    /* a[0] v0 + a[1] v1 + ... < a[count] */

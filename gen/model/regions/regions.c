@@ -552,7 +552,7 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 /* Whether regions that are too many for tables may be made on the target; what stands against it else is said */
 static bool may_cache(const struct building *b, const struct switching *s)
 {
-	return !b->factor && s->impacts + s->frictions + s->sliders == 0;
+	return !b->factor && s->impacts == 0;
 }
 
 /* All of them, or those that the target sums up the others from */
@@ -574,7 +574,7 @@ static struct switching *regions_found(struct building *b, int rows, int *row, b
 		refuse_cache(b, s, s->many ? s->function[s->functions - 1].node : b->spec->request.cached,
 			     s->many ? "regions have no number below 2^31"
 			     : b->factor ? "tunable params change matrices"
-					 : "what sticks, slips or bounces has another inertia there");
+					 : "what bounces has another inertia where it rests");
 	if (!s->many) {
 		complete_switching_functions(s);
 		mark_possible(b, s);

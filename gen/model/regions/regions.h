@@ -79,6 +79,12 @@ bool is_piecewise_linear(const struct building *b);
 int  interval_of(const struct switching *s, int region, int function);
 int  segment_of_region(const struct switching *s, int region);      /* of time */
 int  regions_at_once(const struct switching *s);                    /* in one segment of time, possible or not */
+/* one interval up, or down; -1: it is not listed */
+int  region_above(const struct switching *s, int region, int function);
+int  region_below(const struct switching *s, int region, int function);
+int  beside_lowest(const struct switching *s, int segment, int function, int interval);    /* where all are cached */
+/* Of regions that are cached, the switching function by which a state is held; -1: none */
+int  owner_of_hold(const struct switching *s, int state);
 bool caches_regions(const struct model *model);                     /* the target makes their matrices */
 int  region_numbers(const struct switching *s);                     /* numbers that regions may have in one of them */
 bool is_form_multiple(const struct form *form, const struct form *e, mpq_ptr of);   /* of: the factor */

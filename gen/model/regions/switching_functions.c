@@ -35,6 +35,18 @@ int breaks_of_all(const struct switching *s)
 	return count;
 }
 
+int beside_lowest(const struct switching *s, int segment, int function, int interval)
+{
+	return segment * regions_at_once(s) + (interval > 0 ? first_beside(s, function) + interval - 1 : 0);
+}
+
+int region_below(const struct switching *s, int region, int function)
+{
+	const int interval = interval_of(s, region, function);
+	return interval == 0 ? -1 : !s->cached ? region - s->function[function].stride
+	       : interval > 1 ? region - 1 : region - region % regions_at_once(s);
+}
+
 bool caches_regions(const struct model *model)
 {
 	return model->switching && model->switching->cached;

@@ -224,8 +224,9 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 		g.first[r] = g.guards;
 		hold_region(step, &g, r);
 		for (int e = 0, first = 0; e < s->functions; first += s->function[e++].breaks)
-			if (!s->region[r].possible)
-				continue;
+			if (!s->region[r].possible ||
+			    (s->cached && r % regions_at_once(s) > 0 && interval_of(s, r, e) == 0))
+				continue;       /* those of the lowest interval stand in the lowest region */
 			else {
 				guard_releases(step, &g, r, e);
 				if (!is_stick(&s->function[e], interval_of(s, r, e)))
@@ -238,7 +239,8 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	for (int k = 0; k < s->segments; k++)
 		for (int i = 0; i < s->impacts; i++)
 			g.impact[k * s->impacts + i] = impact_in(step, &g, i, k);
-	bound_rows_of_guards(step, pieces, &g);
+	if (!s->cached)                         /* else the target does */
+		bound_rows_of_guards(step, pieces, &g);
 	g.amplitude = ARRAY(double, (size_t)(s->segments * s->functions));
 	g.row_amplitude = ARRAY(double, g.rows);
 	for (int k = 0; k < s->segments; k++)
@@ -270,6 +272,28 @@ static int bounces_in_step(const struct model *model)
 		sum += most;
 	}
 	return (int)fmin(model->contacts.impacts > 1 ? 2 * sum : sum, MOST);
+}
+
+void most_in_region(const struct step *step, int *guards, int *holds)
+{
+	const struct switching *s = step->model->switching;
+	*guards = *holds = 0;
+	for (int e = 0; e < s->functions; e++) {
+		int most = 0, held = 0;
+		for (int k = 0; k < s->segments * (s->function[e].breaks + 1); k++) {
+			const struct region *r =
+				&s->region[beside_lowest(s, k % s->segments, e, k / s->segments)];
+			int own = 2, holding = 0;
+			for (int i = 0; i < r->releases; i++)
+				own += r->release[i].function == e;
+			for (int i = 0; i < r->holds; i++)
+				holding += owner_of_hold(s, r->hold[i].state) == e;
+			most = own > most ? own : most;
+			held = holding > held ? holding : held;
+		}
+		*guards += most;
+		*holds += held;
+	}
 }
 
 int max_events(const struct model *model)

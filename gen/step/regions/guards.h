@@ -57,6 +57,8 @@ struct guards {
 	struct impact_row *impact;  /* per segment of time and impact */
 };
 struct guards guards_of(const struct step *step, const struct pieces *pieces);
+/* of a region whose matrix the target makes, at most: its guards, and assignments */
+void most_in_region(const struct step *step, int *guards, int *holds);
 /* of one step: MAX_EVENTS and MAX_SPLITS, and room for the bounces before a contact rests */
 int max_events(const struct model *model);
 int max_splits(const struct model *model);

@@ -4,6 +4,7 @@
 #include "inner.h"
 #include "model/contacts/contacts.h"
 #include "step/cost.h"
+#include "step/regions/guards.h"
 #include "step/linear/forms.h"
 #include "plrt.h"
 #include "step/exponential/recipe.h"
@@ -165,14 +166,22 @@ int slots_of(const struct step *step)
 	const struct switching *s = step->model->switching;
 	const long bytes = bytes_of_slot(step);
 	const long fit = BYTES / bytes;
-	return s->slots ? s->slots : fit < LEAST ? LEAST : fit > MOST ? MOST : (int)fit;
+	/* so many that none goes while it is compared with what would stick and slip beside it */
+	if (s->slots)
+		return has_events(s) && s->slots < LEAST ? LEAST : s->slots;
+	return fit < LEAST ? LEAST : fit > MOST ? MOST : (int)fit;
 }
 
 long bytes_of_slot(const struct step *step)
 {
-	const long size = step->layout.size, functions = step->model->switching->functions,
-		   rungs = room_for_rungs(step), real = step->model->request.single ? 4 : 8;
-	return 16 + real * size * (2 * size + rungs * (size + 1 + functions) + 3 * functions);
+	const struct switching *s = step->model->switching;
+	const long size = step->layout.size, rungs = room_for_rungs(step), real = step->model->request.single ? 4 : 8;
+	int guards, holds;
+	if (!has_events(s))
+		return 16 + real * size * (2 * size + rungs * (size + 1 + s->functions) + 3 * s->functions);
+	most_in_region(step, &guards, &holds);
+	return 28 + real * size * (2 * size + rungs * (size + 1 + guards) + s->functions + 4 * guards + holds) +
+	       (24 + 2 * real) * guards + 4 * holds;
 }
 
 static void halve_region(struct step *step, int k)
