@@ -57,18 +57,16 @@ near() {
 }
 
 one='5000*max(X - G, 0)' two='5000*deadzone(X, -g, G)' rubs="friction(X' - 0.1, 150*G, 170*G)" slides='900*(X - Z)'
-stops tables 5 "$one" && run tables 1
-stops few 5 "$one" 'regions cached 3' && run few 1
-near tables few 2e-13 '5 stops, 3 matrices kept: as by tables of all 32 regions'
-stops tables 4 "$two" && run tables 1
-stops few 4 "$two" 'regions cached 4' && run few 1
-near tables few 2e-13 '4 stops on both sides, 4 matrices kept: as by tables of all 81 regions'
-stops tables 4 "$rubs" && run tables 1
-stops few 4 "$rubs" 'regions cached 8' && run few 1
-near tables few 2e-13 '4 masses on belts, 8 matrices kept: as by tables of all 81 regions'
-stops tables 4 "$slides" && run tables 1
-stops few 4 "$slides" 'regions cached 8' && run few 1
-near tables few 2e-13 '4 sliders without mass, 8 matrices kept: as by tables of all 81 regions'
+# beside NUMBER TERM KEPT WHAT: with so many matrices kept, and with tables of all regions
+beside() {
+    stops tables "$1" "$2" && run tables 1
+    stops few "$1" "$2" "regions cached $3" && run few 1
+    near tables few 2e-13 "$4, $3 matrices kept: as by tables of all regions"
+}
+beside 5 "$one" 3 '5 stops'
+beside 4 "$two" 4 '4 stops on both sides'
+beside 4 "$rubs" 8 '4 masses on belts'
+beside 4 "$slides" 8 '4 sliders without mass'
 stops many 12 "$rubs" && run many 0.3
 stops series 12 "$rubs" 'scheme taylor' 'tolerance 1e-14' && run series 0.3
 near many series 2e-12 '12 masses on belts: as by a Taylor series from event to event'
@@ -78,14 +76,15 @@ near many series 2e-12 '12 stops, by default: as by a Taylor series from crossin
 stops many 12 "$one" 'regions cached 2' && mv many.csv kept.csv && run many 0.5
 [ -s kept.csv ] && cmp many.csv kept.csv >log
 result $? 'the bits are the same whatever is kept'
-stops many 12 "$slides" && size=$("$plgen" many.spec | wc -c)
-echo "$size bytes, 307200 at most expected" >log
-[ "$size" -gt 10000 ] && [ "$size" -le 307200 ]
-result $? '12 sliders, 531441 regions: less than 300 KB of C'
-stops many 12 "$two" && size=$("$plgen" many.spec | wc -c)
-echo "$size bytes, 307200 at most expected" >log
-[ "$size" -gt 10000 ] && [ "$size" -le 307200 ]
-result $? '12 stops on both sides, 531441 regions: less than 300 KB of C'
+# small TERM WHAT
+small() {
+    stops many 12 "$1" && size=$("$plgen" many.spec | wc -c)
+    echo "$size bytes, 307200 at most expected" >log
+    [ "$size" -gt 10000 ] && [ "$size" -le 307200 ]
+    result $? "$2, 531441 regions: less than 300 KB of C"
+}
+small "$slides" '12 sliders'
+small "$two" '12 stops on both sides'
 
 # NAME_at meets regions, too, and their matrices take the places of others.
 stops many 12 "$one" 'regions cached 2'
@@ -121,4 +120,13 @@ runtime_archive "$root/runtime"
 "$plgen" many.spec -o many.c >log 2>&1 &&
     ${CC:-cc} -std=c99 -O1 -I"$root/runtime" between.c many.c "$archive" -o between >log 2>&1 && ./between >log
 result $? 'NAME_at between steps changes none of their bits'
+
+# The self-test of so many has states that the same steps came to.
+printf '%s\n' '#include <stdio.h>' 'double many_selftest(void);' \
+    'int main(void) { double off = many_selftest(); printf("%g, 10 at most expected\\n", off); return !(off <= 10); }' \
+    >self.c
+stops many 12 "$two"
+"$plgen" --selftest -o many.c many.spec 2>log &&
+    ${CC:-cc} -std=c99 -O1 -I"$root/runtime" self.c many.c "$archive" -o self >>log 2>&1 && ./self >log
+result $? '12 stops on both sides: the self-test'
 tap_end

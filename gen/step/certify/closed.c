@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* States for the target's self-test to step to: of a linear model in closed form. */
 #include "inner.h"
+#include "model/regions/regions.h"
 #include "step/linear/images.h"
 
 #include <math.h>
@@ -76,7 +77,9 @@ void reference_units(struct reference *r, bool single)
 
 bool has_closed_form(const struct step *step)
 {
-	return step->is.flow == FLOW_LINEAR && steps_exactly(step->model) && !step->model->delays &&
+	/* the enclosed trajectory walks through tables of all regions */
+	const bool cached = step->model->switching && step->model->switching->cached;
+	return step->is.flow == FLOW_LINEAR && steps_exactly(step->model) && !step->model->delays && !cached &&
 	       !further_samples(&step->model->system);
 }
 
