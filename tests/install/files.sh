@@ -15,8 +15,8 @@ for file in bin/plgen bin/plrun share/man/man1/plgen.1 share/man/man1/plrun.1 sh
 	share/plgen/runtime/host/plmain.c share/plgen/parts/road_iso8608.spec \
 	share/plgen/vscode/package.json share/vim/vimfiles/syntax/plgen.vim \
 	share/bash-completion/completions/plgen share/bash-completion/completions/plrun \
-	share/zsh/site-functions/_plgen share/doc/plgen/spec.md share/doc/plgen/contacts.md share/doc/plgen/api.md \
-	share/doc/plgen/install.md share/doc/plgen/LICENSE; do
+	share/zsh/site-functions/_plgen share/doc/plgen/spec.md share/doc/plgen/contacts.md \
+	share/doc/plgen/schemes.md share/doc/plgen/api.md share/doc/plgen/install.md share/doc/plgen/LICENSE; do
 	[ -s "$prefix/$file" ] || echo "$file is missing" >>log
 done
 for file in libplrt.a pkgconfig/plgen.pc cmake/plgen/plgenConfig.cmake cmake/plgen/plgenConfigVersion.cmake; do
