@@ -1,7 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reading CSV, and numbers in sentences: -f csv.awk before the program. A line into fields; quotes keep commas. Fields
-# are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false.
-function split_row(line, field,    n, text, pieces, piece, parts, part, i, j) {
+# are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false. `same`, and in the first
+# of several columns nothing, is what the row above has there.
+function split_row(line, field,    n, i) {
+	n = split_fields(line, field)
+	for (i = 1; i <= n; i++) {
+		if (field[i] == "same" || (i == 1 && n > 1 && field[1] == "")) field[i] = above[i]
+		above[i] = field[i]
+	}
+	return n
+}
+function split_fields(line, field,    n, text, pieces, piece, parts, part, i, j) {
 	if (index(line, "\"") == 0) {
 		n = split(line, field, ",")
 		if (n == 0) field[n = 1] = ""

@@ -59,8 +59,10 @@ done
 for name in hard_methods headline_integrators headline_equal_step; do
 	derive $name.csv "precision_methods.csv $name.csv" unlike
 done
-derive energy.csv energy.csv same -v in_column=steps
-derive largest_step.csv largest_step.csv same -v in_column=criterion
+for name in energy:steps frame_history:t_s hard headline_confluence integrators:h_over_T largest_step:criterion \
+	operator_map papers_beam_tip:t_s precision quality:h_over_T stability_map; do
+	derive ${name%:*}.csv ${name%:*}.csv same -v in_column="${name#*:}"
+done
 
 mkdir "$work/pictures"
 # shellcheck disable=SC2016

@@ -4,9 +4,9 @@
 === stability_map: stability_map.csv stability_boundary.csv
 # A panel for each method of the table
 ends = made('unfold', '-v lists=wh,zeta', folder.'/stability_boundary.csv')
-methods = system("awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' '".csv."'")
+methods = system("awk -F, 'NR > 1 && $1 != \"\" && !seen[$1]++ { print $1 }' '".csv."'")
 count = lines_of(methods)
-named(k) = system(sprintf("awk -F, 'NR > 1 && !seen[$1]++ && ++n == %d { print $1; exit }' '%s'", k, csv))
+named(k) = system(sprintf("echo '%s' | sed -n %dp", methods, k))
 lines = ceil((count + 2)/4.0)           # of panels, the last two places for the colours
 high = 60 + 205*lines
 size = sprintf('900,%d', high)

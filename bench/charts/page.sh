@@ -123,12 +123,12 @@ numbers() {
 	printf '<p class=numbers>Numbers: <a href="%s">%s</a></p>\n' "$1" "$1"
 }
 
-# headed HEADING NAME [COLUMN=VALUE]: the table NAME.csv with its caption below a heading, if there is one
+# headed HEADING NAME: the table NAME.csv with its caption below a heading, if there is one
 headed() {
 	there "$2.csv" || return 0
-	[ -z "$1" ] || printf '<h2>%s</h2>\n' "$1"
+	[ -z "$1" ] || printf '<h2 id="%s">%s</h2>\n' "$2" "$1"
 	caption "$2"
-	table "$2.csv" "$3"
+	table "$2.csv"
 }
 
 # show ITEM...: NAME, a picture; NAME.csv, a table; +NAME.csv, a link to its numbers; HEADING=NAME, a table below its
@@ -220,8 +220,10 @@ model() {
 	made ranking -v model="$1" "$folder/precision.csv"
 	numbers precision.csv
 	! there largest_step.csv ||
-		[ -z "$(made first -v where=model -v is="$1" -v wanted=model "$folder/largest_step.csv")" ] ||
-		headed 'The largest stable step' largest_step "model=$1"
+		[ -z "$(made first -v where=model -v is="$1" -v wanted=model "$folder/largest_step.csv")" ] || {
+		echo '<h2><a href="stability.html#largest_step">The largest stable step</a></h2>'
+		table largest_step.csv "model=$1"
+	}
 }
 
 index() {
@@ -255,7 +257,8 @@ index() {
 	value of the history; they are the same to the last digit in every run. Times are medians of samples taken in
 	turns, each of them a whole history; the tables have minimum, median and maximum. A failure stands as a word, in
 	no place as a gap. Parameters of the models from the four papers are chosen, since those of the sources did not
-	survive; what is deduced and what is chosen is said in each model's file.</p>
+	survive; what is deduced and what is chosen is said in each model's file. In the .csv files the first column is empty
+	where it has what the row above has, and another says <code>same</code>.</p>
 	EOT
 }
 
@@ -269,7 +272,7 @@ for topic in $names; do
 	[ "$topic" = more ] || [ -z "$(content "$topic")" ] || : >"$folder/$topic.html"
 done
 if there precision.csv; then
-	for name in $(awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$folder/precision.csv"); do
+	for name in $(awk -F, 'NR > 1 && $1 != "" && !seen[$1]++ { print $1 }' "$folder/precision.csv"); do
 		model "$name" | page model "$name: time against error" >"$folder/model_$name.html"
 	done
 fi

@@ -16,7 +16,7 @@ clipped(model, horizon) = series(csv, "-v 'where=system=".model.";horizon_s=".ho
 	"-v x=intervals_in_30_s -v y=error_over_initial_displacement")
 panel(model, horizon) = "load clipped('".model."', '".horizon."'); eval 'plot '.clauses.', ends(\"".model."\", ".\
 	"\"".horizon."\") using 1:2:(sprintf(\"  %.2f\", $3)) with labels left font \",9\" notitle'"
-do for [model in first_words(csv, 1)] {
+do for [model in first_words(csv)] {
 	name = 'convergence_'.model
 	do for [form = 1:forms] {
 		eval begin(form)
@@ -109,7 +109,7 @@ eval write
 
 === break_even: break_even_raw.csv narrow
 # For each model, after how many steps generating and compiling is won back
-names = first_words(csv, 1)
+names = first_words(csv)
 size = sprintf('%d,%d', narrow ? 400 : 900, 150 + (narrow ? 50 : 0) + 24*words(names))
 load made('pays', '', csv)
 set xlabel 'steps of the generated code'
@@ -380,7 +380,7 @@ rows(h, operator) = made('unfold', '-v lists=t_s,largest_tip_in_last_second_m', 
 # soft operators: open marks, dashed; from that of the true speed on: filled marks, unbroken
 marks = '4 6 8 12 5 7 9'
 colours = '#be3028 #c48600 #be3028 #c48600 #1f6fe0 #6a6f78 #1f6fe0'
-steps = first_words(csv, 1)
+steps = first_words(csv)
 left(k) = 0.08 + 0.265*(k - 1)
 do for [form = 1:forms] {
 	eval begin(form)
@@ -434,7 +434,7 @@ eval write
 set ylabel 'largest error over the history, relative'
 set yrange [1e-16:10]; set ytics 1e-16,100,10; set mytics 2
 set xlabel "CPU time per output [µs], median"
-do for [m in first_words(csv, 1)] {
+do for [m in first_words(csv)] {
 	name = 'precision_'.m
 	eval heading
 	load series(csv, sprintf("-v 'where=model=%s' -v x=ns_median -v y=largest -v xfactor=1e-3 -v most=10 %s", \

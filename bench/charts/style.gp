@@ -17,9 +17,8 @@ made(section, options, file) = "< sh '".here."/table.sh' ".section." -v palette=
 series(file, options) = made('series', options, file)
 # A mark on some points of a curve
 marked(every, options) = series(csv, options)." | sed 's/ pt / pi ".every." pt /g'"
-# What stands in a column, each once, where it has no blanks
-first_words(file, column) = system(sprintf("awk -F, 'NR > 1 && !seen[$%d]++ { printf \"%%s \", $%d }' '%s'", column, \
-	column, file))
+# What the first column has, each once, where it has no blanks
+first_words(file) = system("awk -F, 'NR > 1 && $1 != \"\" && !seen[$1]++ { printf \"%s \", $1 }' '".file."'")
 
 size = narrow ? '400,560' : '900,560'           # pixels; a picture may have another
 eval "set terminal svg size ".size              # until it is written: into nothing

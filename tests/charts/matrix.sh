@@ -6,7 +6,7 @@ precision=$1
 csv=$(dirname "$0")/../../bench/charts/csv.awk
 # time, family, model, error, method: what did not fail, the quickest first
 awk -f "$csv" -f "$(dirname "$0")/sorted.awk" "$precision" | LC_ALL=C sort -s -t '	' -k1,1g >sorted
-awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$precision" | while read -r model; do
+awk -F, 'NR > 1 && $1 != "" && !seen[$1]++ { print $1 }' "$precision" | while read -r model; do
 	for error in 1e-3 1e-6 1e-9 1e-12; do
 		for side in ours peer; do
 			awk -F '\t' -v m="$model" -v e="$error" -v s="$side" '$3 == m && $2 == s && $4 <= e + 0 {

@@ -198,8 +198,9 @@ fi
 # Two models, one of them unknown, and more methods than a legend holds, some of families nobody has heard of
 few() {
 	mkdir -p "$1"
-	awk -F, 'NR == 1 || $1 == "scs"' "$kept/precision.csv" >"$1/precision.csv"
-	awk -F, '$1 == "pendulum"' OFS=, "$kept/precision.csv" | sed 's/^pendulum/new_thing/' >new
+	sh "$made" once -v columns_of="$(head -n 1 "$kept/precision.csv")" "$kept/precision.csv" >rows
+	awk -F, 'NR == 1 || $1 == "scs"' rows >"$1/precision.csv"
+	sed -n 's/^pendulum,/new_thing,/p' rows >new
 	cat new >>"$1/precision.csv"
 	for k in 1 2 3 4 5 6 7 8 9; do
 		sed "s/,RK4,fixed/,Solver $k,fixed/; s/,etdrk4,/,etdam$k,/
