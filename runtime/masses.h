@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* masses.h: part of access.h: where the mass matrix M of the state becomes singular.  Pivots of its elimination say it:
  * their signs stay as long as it is regular, those of a symmetric matrix one by one in their number, of another their
- * product.  The model has
+ * product; one that is never negative may touch 0.  The model has
  *
  *     PL_MASSES                  rows of M, multipliers of constraints among them; PL(masses)(s, tau, y, mass) its
  *                                entries that are not 0, tau after now; PL(mass_at_start) the sizes of its diagonal at
  *                                the start
  *     PL_FAILS                   1: a step may end before its time: PL(cause) says why
- *     PL_INDEFINITE              1: nothing shows that M stays regular, so the end of each step is looked at; members
+ *     PL_INDEFINITE              1: the end of each step is looked at, as nothing shows that M stays regular; members
  *                                pivot, regular; PL(mass_block)[]: 0, and at the last row of a block 1, or 2 of one
  *                                that is not symmetric; PL(rate_of)[]: the state that is the slope of another; -1: none
  *     PL_SAMPLED                 1: no tolerance bounds the step, which may pass more than one singular place */
@@ -34,6 +34,15 @@ static PL_APART void PL(pivots)(const PL_TYPE *s, real tau, const real y[PL_STAT
 }
 
 #if PL_INDEFINITE
+/* From y on as long as `time`, coordinates with their velocities */
+static void PL(go_ahead)(const real y[PL_STATES], real time, real ahead[PL_STATES])
+{
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        ahead[i] = y[i] + (PL(rate_of)[i] < 0 ? 0 : time * y[PL(rate_of)[i]]);
+    }
+}
+
 /* Whether M is singular somewhere between two states, by its pivots there */
 static int PL(passes_zero)(const real from[PL_MASSES], const real to[PL_MASSES])
 {
@@ -64,10 +73,7 @@ static int PL(ends_soon)(const PL_TYPE *s, real tau, const real y[PL_STATES], co
 {
 #if PL_INDEFINITE
     real ahead[PL_STATES], then[PL_MASSES], size[PL_MASSES];
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        ahead[i] = y[i] + (PL(rate_of)[i] < 0 ? 0 : PL_H / 64 * y[PL(rate_of)[i]]);
-    }
+    PL(go_ahead)(y, PL_H / 64, ahead);
     PL(pivots)(s, tau, ahead, then, size);
     return PL(passes_zero)(pivot, then);
 #else
@@ -107,14 +113,23 @@ static void PL(begin_mass)(PL_TYPE *s)
 }
 
 #if PL_SAMPLED
-/* Whether pivots are about the same */
-static int PL(are_near)(const real a[PL_MASSES], const real b[PL_MASSES])
+/* Whether pivots are the same but for a factor */
+static int PL(are_near)(const real a[PL_MASSES], const real b[PL_MASSES], real factor)
 {
     int k;
-    for (k = 0; k < PL_MASSES && pl_magnitude(a[k]) <= 4 * pl_magnitude(b[k]) &&
-                pl_magnitude(b[k]) <= 4 * pl_magnitude(a[k]); k++) {
+    for (k = 0; k < PL_MASSES && pl_magnitude(a[k]) <= factor * pl_magnitude(b[k]) &&
+                pl_magnitude(b[k]) <= factor * pl_magnitude(a[k]); k++) {
     }
     return k == PL_MASSES;
+}
+
+/* Whether one is far smaller at a than at the ends of the step */
+static int PL(touches_zero)(const real a[PL_MASSES], const real from[PL_MASSES], const real to[PL_MASSES])
+{
+    int k;
+    for (k = 0; k < PL_MASSES && pl_magnitude(a[k]) > (real)1e-6 * (pl_magnitude(from[k]) + pl_magnitude(to[k])); k++) {
+    }
+    return k < PL_MASSES;
 }
 
 /* Pivots `ahead` of the step behind its start, on the cubic that has the places and velocities of both its ends */
@@ -135,32 +150,55 @@ static void PL(pivots_within)(const PL_TYPE *s, const real end[PL_STATES], real 
     PL(pivots)(s, (ahead - 1) * PL_H, y, pivot, size);
 }
 
-/* Whether M is singular somewhere in the step, at whose end pivots are `to`: one that is far too long may pass singular
- * places twice, or land anywhere.  It is looked at so closely that pivots change little from one look to the next. */
+/* Whether M is singular somewhere on the way to `end`, where pivots are `to`.  It is looked at so closely that pivots
+ * change by less than a half from one look to the next, also one that touches 0, or nearly vanish. */
 static int PL(passes_zero_within)(const PL_TYPE *s, const real end[PL_STATES], const real to[PL_MASSES])
 {
-    real from[PL_MASSES], pivot[PL_MASSES], done = 0, part = (real)0.5;
-    int k, looks;
+    const real longest = (real)0.125;
+    real from[PL_MASSES], pivot[PL_MASSES], done = 0, part = longest;
+    int k, looks, near;
     for (k = 0; k < PL_MASSES; k++) {
         from[k] = s->pivot[k];
     }
-    for (looks = 0; looks < 64 && done < 1 && !PL(are_near)(from, to); looks++) {
+    for (looks = 0; looks < 1000 && done < 1; looks++) {
         part = part < 1 - done ? part : 1 - done;
         PL(pivots_within)(s, end, done + part, pivot);
         if (PL(passes_zero)(s->pivot, pivot)) {
             return 1;
         }
-        if (!PL(are_near)(from, pivot) && part > (real)1e-6) {
+        near = PL(are_near)(from, pivot, (real)1.5);
+        if (!near && part > (real)1e-6) {
             part /= 2;
             continue;
+        }
+        if (!near && PL(touches_zero)(pivot, s->pivot, to)) {
+            return 1;
         }
         for (k = 0; k < PL_MASSES; k++) {
             from[k] = pivot[k];
         }
         done += part;
-        part *= 2;
+        part = 2 * part < longest ? 2 * part : longest;
     }
     return 0;
+}
+
+/* The same of the step behind.  One that is far too long may pass singular places twice, or land anywhere: then it is
+ * on the straight way that its start would go on. */
+static int PL(passes_within)(const PL_TYPE *s, const real y[PL_STATES], const real to[PL_MASSES],
+                             const real size[PL_MASSES])
+{
+    real ahead[PL_STATES], pivot[PL_MASSES], there[PL_MASSES];
+    int i;
+    for (i = 0; i < PL_MASSES && pl_magnitude(s->pivot[i]) > size[i] / 16 && pl_magnitude(to[i]) > size[i] / 16; i++) {
+    }
+    if (i == PL_MASSES && PL(are_near)(s->pivot, to, 4)) {
+        return 0;
+    }
+    PL(go_ahead)(s->regular, PL_H, ahead);
+    PL(pivots)(s, 0, ahead, pivot, there);
+    return PL(passes_zero_within)(s, y, to) || PL(passes_zero)(s->pivot, pivot) ||
+           PL(passes_zero_within)(s, ahead, pivot);
 }
 #endif
 
@@ -175,7 +213,7 @@ static PL_APART void PL(stay_regular)(PL_TYPE *s)
     }
     PL(pivots)(s, 0, y, pivot, size);
 #if PL_SAMPLED
-    passes = PL(passes_zero)(s->pivot, pivot) || PL(passes_zero_within)(s, y, pivot);
+    passes = PL(passes_zero)(s->pivot, pivot) || PL(passes_within)(s, y, pivot, size);
 #else
     passes = PL(passes_zero)(s->pivot, pivot);
 #endif

@@ -58,6 +58,13 @@ bool steps_may_fail(const struct emitter *e)
 	return e->step->taylor.expansion || e->step->collocation;
 }
 
+/* Whether steps have to look for a singular M: nothing shows that it stays regular, or it may touch 0, where without a
+ * tolerance no step fails */
+static bool looks_at_masses(const struct emitter *e)
+{
+	return e->model->equations.indefinite || !tells_tolerance(e);
+}
+
 /* Rows of all blocks, where they are looked at; 0: none depends on the state, or they read inputs, or M at the start is
  * not known */
 int moving_masses(const struct emitter *e)
@@ -67,17 +74,16 @@ int moving_masses(const struct emitter *e)
 	for (int i = 0; s && i < s->masses; rows += s->mass[i++].system.n)
 		if (!s->mass[i].start)
 			return 0;
-	if (rows == 0 || e->model->relative || !(steps_may_fail(e) || e->model->equations.indefinite))
+	if (rows == 0 || e->model->relative || !(steps_may_fail(e) || looks_at_masses(e)))
 		return 0;
 	const struct form **entry = entries(s, &count);
 	const struct reads r = reads_of(e->model, count, entry);
 	return any_of(r.input, 2 * e->system->inputs) ? 0 : rows;
 }
 
-/* Whether nothing shows that it stays regular */
 bool may_be_singular(const struct emitter *e)
 {
-	return moving_masses(e) > 0 && e->model->equations.indefinite;
+	return moving_masses(e) > 0 && looks_at_masses(e);
 }
 
 static struct formulas *mass_entries(const struct emitter *e)

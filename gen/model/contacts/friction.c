@@ -299,12 +299,13 @@ static bool find_holds(const struct building *b, const struct switching *s, int 
 	bool possible = true;
 	region->hold = ARRAY(struct hold, most);
 	region->holds = 0;
-	for (int k = 0; k < count && possible; k++) {
-		if (!is_borne(&stuck[k]))
+	for (int k = 0; k < 2 * count && possible; k++) {       /* no friction sticks beside what rests that way */
+		const struct stuck *one = &stuck[k % count];
+		if (k < count ? !one->atom : !one->impact)
 			continue;
-		possible = hold_form(&h, stuck[k].velocity, false);
-		if (!possible && stuck[k].atom)
-			report_held(&h, &stuck[k]);
+		possible = hold_form(&h, one->velocity, false);
+		if (!possible && one->atom)
+			report_held(&h, one);
 	}
 	for (int k = 0; k < count && possible; k++)
 		possible = !stuck[k].impact || hold_form(&h, stuck[k].place, true);
