@@ -50,7 +50,8 @@
 typedef struct PL(piece) { /* a part of a step */
     const PL_TYPE *s;
     PL(contact) *contact;         /* whose intervals hold */
-    const pl_crossing *first;     /* what a step over all of h meets, at its time in h; NULL: that is not known */
+    real met;                     /* known: what a step over all of h meets is found already, there */
+    int known;
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
     real done, limit;             /* where it begins; where the loads change, or the step ends [h] */
     real longest;                 /* that is tried [h] */
@@ -58,6 +59,8 @@ typedef struct PL(piece) { /* a part of a step */
 #if PL_CONTACTS
     real low[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_ORDER)];
     pl_instant at;                /* what happens where it begins; law: the series from there */
+#else
+    pl_crossing found;            /* what it meets */
 #endif
 } PL(piece);
 
@@ -65,7 +68,7 @@ static inline void PL(begin)(PL(piece) *p, const PL_TYPE *s, const real u[], PL(
 {
     p->s = s;
     p->contact = contact;
-    p->first = NULL;
+    p->known = 0;
     PL(inputs_now)(s, u, p->start, p->slope);
     p->done = 0;
     p->limit = 1;
@@ -257,18 +260,6 @@ static void PL(make_cubics)(real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TER
 #endif
 }
 
-#if !PL_CONTACTS
-/* When, in a part of this size [h], a switching function first leaves its interval; below 0: none does */
-static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
-                      const real terms[PL_TERMS], real size, pl_crossing *crossing)
-{
-    real work[PL_SERIES_SWITCHING_WORK(3)];
-    PL(make_cubics)(c, d, size);
-    return pl_series_switching_next(&PL(passing), c[0], terms, p->contact->interval, size, &p->splits, crossing, work);
-}
-
-#endif
-
 /* From `at` to where column k passes `to`, back by half of `size` or on by `left` at most; returns by how much,
  * all in h.  How far a part ends off the breakpoint that it was to meet is of the size of the error: a Taylor
  * polynomial bridges it. */
@@ -309,86 +300,77 @@ static inline int PL(halve)(PL(piece) *p, real size)
     return p->longest < PL_LEAST_PART ? PL_NOT_FINITE : PL_SHORTER;
 }
 
-#if PL_CONTACTS
 #include "met.h"
-#else
 
-/* The part up to `to` [h]: next, where it ends; found->time, how long after its start it meets what is found, or below
- * 0: 0, PL_SHORTER, or what went wrong.  What a cubic says of a part that is too long for it is believed where that
- * stays within. */
-static int PL(search_step)(PL(piece) *p, real to, real c[PL_WAY + 1][PL_TERMS], const real terms[PL_TERMS],
-                      const real y[PL_STATES], real next[PL_STATES], pl_crossing *found)
+/* The part up to `to` [h]: next, where it ends; *met, how long after its start it meets something, or below 0; it then
+ * is as long as *size: 0, PL_SHORTER, or what went wrong.  What a cubic says of a part that is too long for it is
+ * believed where that stays within. */
+static int PL(search_step)(PL(piece) *p, real to, real c[PL_WAY + 1][PL_TERMS], real d[2][PL_TERMS],
+                           real terms[PL_TERMS], const real y[PL_STATES], real next[PL_STATES], real *size, real *met)
 {
-    const real size = to - p->done;
-    real d[2][PL_TERMS], spare[PL_TERMS];
-    if (PL(advance)(p, size, y, next) != 0) {
-        return PL(halve)(p, size);
+    const real full = *size;
+    real spare[PL_TERMS];
+    if (PL(advance)(p, full, y, next) != 0) {
+        return PL(halve)(p, full);
     }
     PL(look)(p, to, next, d, spare);
-    found->time = PL(meets)(p, c, (const real (*)[PL_TERMS])d, terms, size, found);
+    *met = PL(meets)(p, c, (const real (*)[PL_TERMS])d, terms, size);
     if (p->splits < 0) {
-        return PL_TOO_MANY_EVENTS;
+        return PL(gave_up)(p);
     }
 #if PL_FAST_PATH
-    if (size > PL_CERTAIN &&
-        (found->time >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
-                                        p->contact->interval, size, terms, PL_NOISE))) {
-        p->longest = size / 2;
+    if (full > PL_CERTAIN && (*met >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
+                                                      p->contact->interval, full, terms, PL_NOISE))) {
+        p->longest = full / 2;
         return PL_SHORTER;
     }
 #endif
     return 0;
 }
 
-static inline int PL(pass_event)(const PL(piece) *p)
-{
-    return PL(cross)(p->contact, p->done * PL_H) ? 0 : PL_TOO_MANY_EVENTS;
-}
-
 /* The next part, y at its start and then at its end: 0, PL_SHORTER, or what went wrong */
 static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
 {
-    real c[PL_WAY + 1][PL_TERMS], terms[PL_TERMS], next[PL_STATES], to, size;
-    pl_crossing found;
-    int i;
-    PL(look)(p, p->done, y, c, terms);
-    if (pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, &p->contact->last)) {
-        return PL(pass_event)(p);
+    real c[PL_WAY + 1][PL_TERMS], d[2][PL_TERMS], terms[PL_TERMS], next[PL_STATES], to, size, end, met;
+    int i, known = p->known, wrong = PL(begin_part)(p, y, c, terms);
+    if (wrong != 0) {
+        return wrong > 0 ? 0 : PL(gave_up)(p);
     }
     to = p->limit - p->done < p->longest ? p->limit : p->done + p->longest;
-    size = to - p->done;
-    if (p->first != NULL) {
-        found = *p->first;
-    } else {
-        int wrong;
-        found = p->contact->last;
-        wrong = PL(search_step)(p, to, c, terms, y, next, &found);
+    size = end = to - p->done;
+    met = p->met;
+    p->known = 0;
+    if (!known) {
+        wrong = PL(search_step)(p, to, c, d, terms, y, next, &end, &met);
         if (wrong != 0) {
             return wrong;
         }
     }
-    p->first = NULL;
-    if (found.time > 0) {
-        if (PL(advance)(p, found.time, y, next) != 0) {
-            return PL(halve)(p, found.time);
+    end = met >= 0 ? met : end;
+    if (end > 0 && (end < size || known)) {
+#if PL_CONTACTS
+        real spare[PL_TERMS];
+#endif
+        if (PL(advance)(p, end, y, next) != 0) {
+            return PL(halve)(p, end);
         }
-        found.time += PL(onto)(p, p->done + found.time, found.time, size - found.time, PL(column)[found.expression],
-                               PL(breakpoint_of)(&found), found.upward, next);
+#if PL_CONTACTS
+        PL(look)(p, p->done + end, next, d, spare);
+#endif
+    }
+#if PL_CONTACTS
+    (void)PL(put_back)(p->contact, (const real (*)[PL_TERMS])d, next);
+#endif
+    if (met > 0) {
+        end += PL(onto_event)(p, p->done + end, end, size - end, next);
     }
     p->longest = PL_FAST_PATH && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
-    for (i = 0; i < PL_STATES && found.time != 0; i++) {
+    for (i = 0; i < PL_STATES && end > 0; i++) {
         y[i] = next[i];
     }
-    p->contact->last = found;
-    p->done = found.time >= 0 && found.time < size ? p->done + found.time : to;
-    if (found.time < 0) {
-        p->contact->last.expression = -1;
-        return 0;
-    }
-    return PL(pass_event)(p);
+    p->done = end < size ? p->done + end : to;
+    return PL(end_part)(p, end, met >= 0) ? 0 : PL(gave_up)(p);
 }
-
-#endif
 
 /* y, `end` h later: 0, or what went wrong, and y as far as it went */
 static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
@@ -415,47 +397,42 @@ static PL_APART int PL(between)(PL(piece) *p, real end, real y[PL_STATES])
 #include "normal.h"
 #endif
 
-#if !PL_CONTACTS
-
-/* Where a step comes near a breakpoint: whether it meets none; else *crossing, and its time below 0 where that is not
- * known.  c, d: of both ends of all of h */
+/* Whether a step over all of h stands that comes near an event.  c, d: of its ends */
 static PL_APART int PL(is_event_free)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
-                                 const real terms[PL_TERMS], pl_crossing *crossing)
+                                      real terms[PL_TERMS])
 {
-    *crossing = p->contact->last;
-    if (pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, crossing)) {
-        crossing->time = -1;
+    real end = 1, met;
+#if PL_CONTACTS
+    real y[PL_STATES];
+    PL(watch)(p, y);
+#else
+    p->found = p->contact->last;
+    if (pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, &p->found)) {
         return 0;
     }
-    crossing->time = PL(meets)(p, c, d, terms, 1, crossing);
+#endif
+    met = PL(meets)(p, c, d, terms, &end);
+    p->known = !PL_FAST_PATH && !PL_CONTACTS && met >= 0;
+    p->met = met;
 #if PL_FAST_PATH
     if (!PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
         return 0;
     }
 #endif
-    return crossing->time < 0 && p->splits >= 0 && pl_not_finite(p->s->y, PL_STATES) == 0;
+    return met < 0 && !(end < 1) && p->splits >= 0 && !PL_LET_GO(p) && pl_not_finite(p->s->y, PL_STATES) == 0;
 }
-
-#endif
 
 /* Whether the step that was made stands, as is_event_free: the loads have had one formula in it, too */
 static inline int PL(stands)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
-                             real terms[PL_TERMS], pl_crossing *crossing)
+                             real terms[PL_TERMS])
 {
-    crossing->time = -1;
 #if PL_SEGMENTS > 1
     if (p->segment < PL_SEGMENTS - 1 && PL(until)(p->s, p->segment) < PL_H) {
         return 0;
     }
 #endif
-    if (PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, 0)) {
-        return 1;
-    }
-#if PL_CONTACTS
-    return PL(is_event_free)(p, c, d, terms);
-#else
-    return PL(is_event_free)(p, c, d, terms, crossing);
-#endif
+    return PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, 0) ||
+           PL(is_event_free)(p, c, d, terms);
 }
 
 /* The switching functions at the start of the step */
@@ -511,7 +488,6 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     real c[PL_WAY + 1][PL_TERMS], d[2][PL_TERMS], terms[PL_TERMS], spare[PL_TERMS], y[PL_STATES];
     real carry[PL_ROOM(PL_CARRIES)];
     PL(piece) p;
-    pl_crossing crossing;
     int i;
     PL(ready)(s, u, &s->contact);
     PL(begin)(&p, s, u, &s->contact);
@@ -530,7 +506,7 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
     PL(full_step)(s, u, p.start, p.slope, PL(when)(&p), s->contact.interval);
 #endif
     PL(look)(&p, 1, s->y, d, spare);
-    if (PL(stands)(&p, c, (const real (*)[PL_TERMS])d, terms, &crossing)) {
+    if (PL(stands)(&p, c, (const real (*)[PL_TERMS])d, terms)) {
         s->contact.last.expression = -1;
 #if PL_CONTACTS
         if (PL(put_back)(&s->contact, (const real (*)[PL_TERMS])d, s->y)) {
@@ -551,7 +527,6 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
         }
 #endif
         PL(keep_look)(s, NULL, NULL);
-        p.first = !PL_FAST_PATH && crossing.time >= 0 ? &crossing : NULL;
         s->status |= p.splits < 0 ? PL_TOO_MANY_EVENTS : PL(between)(&p, 1, s->y);
         PL(begin_anew)(s);
     }

@@ -1,8 +1,59 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* met.h: impacts, contacts at rest and friction in a part of a step, part of event_split.h: of what is watched the
- * cubics through values and slopes at both ends are looked at as passage.h looks at the polynomials of a collocation;
- * at an event the law of events.c is asked of a series there.  What holds is a force like others of the remainder, to
- * the order of the scheme: behind each part what is held is put back. */
+/* met.h: what a part of a step meets, part of event_split.h.  Crossings of breakpoints are those of cubics through
+ * values and slopes at both ends.  Impacts, contacts at rest and friction are looked for on the same cubics, as
+ * passage.h looks at the polynomials of a collocation; at an event the law of events.c is asked of a series there.
+ * What holds is a force like others of the remainder, to the order of the scheme: behind each part what is held is put
+ * back. */
+
+#if !PL_CONTACTS
+#define PL_LET_GO(p) 0 /* nothing is held */
+
+/* What happens where a part begins: 0, and c is what is watched there; 1: it begins anew; below 0: there is too much */
+static int PL(begin_part)(PL(piece) *p, const real y[PL_STATES], real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
+{
+    PL(look)(p, p->done, y, c, terms);
+    if (!pl_series_switching_left(&PL(passing), c[0], terms, p->contact->interval, &p->contact->last)) {
+        return 0;
+    }
+    return PL(cross)(p->contact, p->done * PL_H) ? 1 : -1;
+}
+
+/* When, in a part of *size h, a switching function first leaves its interval; below 0: none does */
+static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+                      const real terms[PL_TERMS], const real *size)
+{
+    real work[PL_SERIES_SWITCHING_WORK(3)];
+    PL(make_cubics)(c, d, *size);
+    p->found = p->contact->last;
+    return pl_series_switching_next(&PL(passing), c[0], terms, p->contact->interval, *size, &p->splits, &p->found,
+                                    work);
+}
+
+static inline int PL(gave_up)(const PL(piece) *p)
+{
+    (void)p;
+    return PL_TOO_MANY_EVENTS;
+}
+
+static inline real PL(onto_event)(const PL(piece) *p, real at, real size, real left, real y[PL_STATES])
+{
+    return PL(onto)(p, at, size, left, PL(column)[p->found.expression], PL(breakpoint_of)(&p->found), p->found.upward,
+                    y);
+}
+
+/* Where the part ends: met, there is what it meets */
+static inline int PL(end_part)(PL(piece) *p, real size, int met)
+{
+    (void)size;
+    p->contact->last = p->found;
+    if (!met) {
+        p->contact->last.expression = -1;
+        return 1;
+    }
+    return PL(cross)(p->contact, p->done * PL_H);
+}
+
+#else
 
 /* ---- where a part begins, and along it ---- */
 
@@ -32,10 +83,22 @@ static void PL(stand)(PL(piece) *p)
     p->at.terms = p->terms;
 }
 
+/* What happens there: 0, and c is what is watched there; 1: it begins anew; below 0: there is too much */
+static int PL(begin_part)(PL(piece) *p, const real y[PL_STATES], real c[PL_WAY + 1][PL_TERMS], real terms[PL_TERMS])
+{
+    int begun;
+    PL(stand)(p);
+    begun = pl_events_begin(&PL(events), &p->at);
+    if (begun == 0) {
+        PL(look)(p, p->done, y, c, terms);
+    }
+    return begun;
+}
+
 /* When the first event comes in a part of *size h, which may become less; below 0: none does.  c becomes polynomials,
  * that of what is held the constant as which it is put back. */
-static real PL(look_along)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
-                           real terms[PL_TERMS], real *size)
+static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
+                      real terms[PL_TERMS], real *size)
 {
     int i, m;
     PL(make_cubics)(c, d, *size);
@@ -93,78 +156,19 @@ static int PL(put_back)(const PL(contact) *contact, const real d[2][PL_TERMS], r
     return any;
 }
 
-/* The next part, y at its start and then at its end: 0, PL_SHORTER, or what went wrong */
-static int PL(go_on)(PL(piece) *p, real y[PL_STATES])
+/* Where the part ends: met, there is an event */
+static int PL(end_part)(PL(piece) *p, real size, int met)
 {
-    real c[PL_WAY + 1][PL_TERMS], d[2][PL_TERMS], terms[PL_TERMS], spare[PL_TERMS], next[PL_STATES], to, size, end, met;
-    int i, begun;
-    PL(stand)(p);
-    begun = pl_events_begin(&PL(events), &p->at);
-    if (begun != 0) {
-        return begun > 0 ? 0 : PL(gave_up)(p);
-    }
-    PL(look)(p, p->done, y, c, terms);
-    to = p->limit - p->done < p->longest ? p->limit : p->done + p->longest;
-    size = to - p->done;
-    if (PL(advance)(p, size, y, next) != 0) {
-        return PL(halve)(p, size);
-    }
-    PL(look)(p, to, next, d, spare);
-    end = size;
-    met = PL(look_along)(p, c, (const real (*)[PL_TERMS])d, terms, &end);
-    if (p->splits < 0) {
-        return PL(gave_up)(p);
-    }
-#if PL_FAST_PATH
-    if (size > PL_CERTAIN && (met >= 0 || !PL(stays)((const real (*)[PL_TERMS])c, (const real (*)[PL_TERMS])d,
-                                                     p->contact->interval, size, terms, PL_NOISE))) {
-        p->longest = size / 2;
-        return PL_SHORTER;
-    }
-#endif
-    end = met >= 0 ? met : end;
-    if (end > 0 && end < size) {
-        if (PL(advance)(p, end, y, next) != 0) {
-            return PL(halve)(p, end);
-        }
-        PL(look)(p, p->done + end, next, d, spare);
-    }
-    (void)PL(put_back)(p->contact, (const real (*)[PL_TERMS])d, next);
-    if (met > 0) {
-        end += PL(onto_event)(p, p->done + end, end, size - end, next);
-    } else if (met < 0) {
-        p->at.status |= pl_events_places(&PL(along), &p->at, end, 0);
+    if (!met) {
+        p->at.status |= pl_events_places(&PL(along), &p->at, size, 0);
         p->contact->last.expression = -1;
-    }
-    p->longest = PL_FAST_PATH && 2 * size < PL_LONGEST ? 2 * size : PL_LONGEST;
-    for (i = 0; i < PL_STATES && end > 0; i++) {
-        y[i] = next[i];
-    }
-    p->done = end < size ? p->done + end : to;
-    if (met < 0) {
-        return 0;
+        return 1;
     }
     PL(stand)(p);
-    return pl_events_pass(&PL(events), &p->at) ? 0 : PL(gave_up)(p);
+    return pl_events_pass(&PL(events), &p->at);
 }
 
-/* ---- the step ---- */
-
-/* Whether a step over all of h stands that comes near an event.  c, d: of its ends */
-static PL_APART int PL(is_event_free)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
-                                 real terms[PL_TERMS])
-{
-    real y[PL_STATES], end = 1, met;
-    PL(watch)(p, y);
-    met = PL(look_along)(p, c, d, terms, &end);
-#if PL_FAST_PATH
-    if (!PL(stays)((const real (*)[PL_TERMS])c, d, p->contact->interval, 1, terms, PL_NOISE)) {
-        return 0;
-    }
-#endif
-    return met < 0 && !(end < 1) && p->splits >= 0 && !pl_events_left(&PL(along), &p->at) &&
-           pl_not_finite(p->s->y, PL_STATES) == 0;
-}
+#define PL_LET_GO(p) pl_events_left(&PL(along), &(p)->at) /* whether what is held is let go */
 
 /* The intervals of a state that was set */
 static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
@@ -181,3 +185,5 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
     contact->placed = 1;
     pl_events_place(&PL(events), &p.at);
 }
+
+#endif

@@ -67,7 +67,6 @@
 #undef PL_CONSERVES
 #undef PL_CONSTRAINTS
 #undef PL_CONTACTS
-#undef PL_MOVED
 #undef PL_CONTACT_ROWS
 #undef PL_CONVERTED
 #undef PL_COORDS
@@ -92,7 +91,6 @@
 #undef PL_SCALED
 #undef PL_SEEDED
 #undef PL_BY_PHI
-#undef PL_ARGUMENTS
 #undef PL_JAC
 #undef PL_TAKES
 #undef PL_GIVES
@@ -155,8 +153,6 @@
 #undef PL_SERVED_ROW
 #undef PL_END_ROW
 #undef PL_SERIES_ROW
-#undef PL_FAILS
-#undef PL_AND
 #undef PL_HERE
 #undef PL_HIDDEN
 #undef PL_HUGE
@@ -189,6 +185,7 @@
 #undef PL_LEADS
 #undef PL_TANGENT
 #undef PL_LEAST_PART
+#undef PL_LET_GO
 #undef PL_LISTED
 #undef PL_LOAD_STATES
 #undef PL_LOCATES
@@ -261,7 +258,6 @@
 #undef PL_SAMPLES
 #undef PL_SEARCH
 #undef PL_SEGMENT
-#undef PL_SAMPLED
 #undef PL_SEGMENTS
 #undef PL_SELECTOR
 #undef PL_SERVES
