@@ -99,6 +99,13 @@ sed '/^output miss/d; s/^output .*/output energy, x/; s/^step .*/step 0.1/' "$ca
 	END { print "the energy of a pendulum is off by " worst ", at most 1e-14; x by " x ", at most 1e-12"
 	      exit !(NR == 102 && worst*worst < 1e-28 && x*x < 1e-24) }' >>log
 result $? 'energy beside constraints'
+printf "model turns\ncoord q\nenergy T = q'^2/2, V = -9.81*cos(q)\ninit q = 2\noutput energy\n" >turns.spec
+"$plrun" --scheme 'taylor 16' --step 0.01 turns.spec 3000 --every 10 2>log | awk -F , '
+	NR == 2 { start = $2 }
+	NR > 1 { d = $2 - start; worst = d*d > worst ? d*d : worst }
+	END { print NR " rows, the energy is off by " sqrt(worst) ", at most 6e-15"
+	      exit !(NR == 302 && worst < 3.6e-29) }' >>log
+result $? 'energy of a series of fixed order'
 # The linear equations that constraints leave at a place, against those of coordinates that fulfil them
 awk -v rest=minimal.spec -f "$root/tests/cases.awk" "$root/tests/mechanisms/pairs.cases" >pairs
 numbers() {

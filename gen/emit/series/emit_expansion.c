@@ -12,7 +12,7 @@
 static bool is_straight(const struct emitter *e)
 {
 	return !truncation_of(e)->adaptive && !spans_steps(e) && !watches(e) && expands_in_step(e) &&
-	       !e->model->equations.correction;
+	       !e->model->equations.correction && !holds_energy(e);
 }
 
 /* ---- its sum ---- */
