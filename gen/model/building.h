@@ -32,6 +32,7 @@ struct building {                   /* what the builders share */
 	struct form **load;
 	struct form **time_left;    /* per row: what depends on time alone and it cannot carry */
 	int *owner;                 /* per coordinate: its residual */
+	bool *reversed;             /* per residual: its sign is changed before elements add to it */
 };
 struct constraint {
 	const struct energy *statement;

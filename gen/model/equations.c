@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Written equations and sketches to residuals, one for each coordinate. */
 #include "building.h"
+#include "checks.h"
 #include "model/contacts/friction.h"
 #include "model/linear/relative.h"
 #include "lagrange.h"
@@ -251,15 +252,98 @@ static void report_missing(const struct building *b, int missing, int all)
 		  plural(owned, "equation"), missing_name(b, missing));
 }
 
+/* ---- whose equation it is, and with which sign ---- */
+
+struct leading { struct building *b; struct point *start; const struct form *form; int coord; mpq_ptr value; };
+
+static void add_leading(void *context)
+{
+	const struct leading *l = context;
+	struct collector *c = &l->b->collector;
+	const int order = order_of(l->b->model, l->coord);
+	const struct form *factor = form_at(l->start, *form_derivatives(c, 1, &l->form, false, l->coord, order));
+	RATIONAL value = ZERO;
+	if (!is_constant(factor))
+		return;
+	constant_value(c, factor, value);
+	mpq_add(l->value, l->value, value);
+}
+
+/* Factors of highest derivatives in one written equation at the start; 0 where inputs are in them */
+static void leading_factors(struct leading l, int row, mpq_t *factor)
+{
+	const struct form *form = l.b->segment_equations->residual[row].form;
+	struct form *moving = NEW(struct form);
+	for (int i = 0; i < form->terms; i++) {
+		const struct form_term *term = &form->term[i];
+		if (term->basis.atom && term->basis.atom->highest)
+			form_add_basis(moving, term->basis, term->factor);
+		else if (is_highest(&l.b->model->frame, &term->basis))
+			mpq_set(factor[term->basis.index], term->factor);
+	}
+	l.form = moving;
+	for (l.coord = 0; l.coord < l.b->model->n && moving->terms > 0; l.coord++) {
+		l.value = factor[l.coord];
+		silent_guard(add_leading, &l);
+	}
+}
+
+/* Whether two coordinates have larger factors in each other's equation */
+static bool is_exchanged(const int *owner, int written, int n, mpq_t *factor, int j, int k)
+{
+	RATIONAL now = ZERO, then = ZERO;
+	if (owner[j] >= written || owner[k] >= written)
+		return false;
+	mpq_mul(now, factor[owner[j] * n + j], factor[owner[k] * n + k]);
+	mpq_mul(then, factor[owner[j] * n + k], factor[owner[k] * n + j]);
+	mpq_abs(now, now);
+	mpq_abs(then, then);
+	return mpq_cmp(then, now) > 0;
+}
+
+static void factors_at_start(struct building *b, int written, mpq_t *factor)
+{
+	struct jacobian j = { .b = b, .state = b->model->initial };
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
+	mpq_init(j.t);
+	const struct leading l = { .b = b, .start = point_new(&b->collector, jacobian_point(&j, fixing), fixing) };
+	point_at_values(l.start);
+	for (int i = 0; i < written; i++)
+		leading_factors(l, i, &factor[i * b->model->n]);
+	mpq_clear(j.t);
+}
+
+/* Forces of elements and stops act in the equation of their coordinate. Masses that couple equations leave open which
+ * one that is: a positive definite mass matrix has the largest product along its diagonal, whatever rows are multiplied
+ * by. The sign of that factor is the side on which a force stands. */
+static void orient_equations(struct building *b, int written)
+{
+	const int n = b->model->n;
+	mpq_t *factor = rationals((size_t)written * (size_t)n);
+	factors_at_start(b, written, factor);
+	for (int i = 0; i < n; i++)
+		for (int k = 0; k < i; k++)
+			if (is_exchanged(b->owner, written, n, factor, i, k)) {
+				const int row = b->owner[i];
+				b->owner[i] = b->owner[k];
+				b->owner[k] = row;
+				i = k = 0;
+			}
+	for (int i = 0; i < n; i++)
+		b->reversed[b->owner[i]] = b->owner[i] < written && mpq_sgn(factor[b->owner[i] * n + i]) < 0;
+}
+
 /* Each coordinate gets a written equation; sketched ones without get an empty one to which the elements add. */
 bool assign_equations(struct building *b)
 {
 	if (b->model->relative) {
 		b->owner = b->model->equations.owner;
+		b->reversed = b->model->equations.reversed;
 		return true;
 	}
 	int n = b->model->n, written = b->segment_equations->written, all = written, surplus = -1, missing = -1;
 	b->owner = ARRAY(int, n);
+	b->reversed = ARRAY(bool, n);
 	for (int j = 0; j < n; j++)
 		b->owner[j] = -1;
 	bool *owns = ARRAY(bool, written);
@@ -279,6 +363,8 @@ bool assign_equations(struct building *b)
 			  "surplus equation: %s for %s", plural(all, "equation"), plural(n, "coordinate"));
 	else if (all < n)
 		report_missing(b, missing, all);
+	else if (written > 0 && b->spec->elements + b->spec->whens > 0)
+		orient_equations(b, written);
 	return all == n;
 }
 
@@ -305,6 +391,9 @@ void add_elements(struct building *b, struct segment_equations *s)
 	int written = b->spec->count.components;
 	while (s->residuals < written)
 		add_residual(s, NEW(struct form), b->spec->element[0].at, b->spec->element[0].end);
+	for (int i = 0; i < s->written; i++)
+		if (b->reversed[i])
+			s->residual[i].form = form_difference(NEW(struct form), s->residual[i].form);
 	for (int i = 0; i < b->spec->elements; i++) {
 		const struct element *element = &b->spec->element[i];
 		struct residual *from = &s->residual[b->owner[component_of(element->from)]];

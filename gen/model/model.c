@@ -205,6 +205,7 @@ static void name_relative(struct building *b)
 	model->frame.coords = relative->n;
 	model->names.coord = relative->name;
 	model->equations.owner = ARRAY(int, n);
+	model->equations.reversed = relative->written->equations.reversed;
 	for (int j = 0; j < relative->n; j++) {
 		const struct model *written = relative->written;
 		int like = j < written->n ? j : 0;

@@ -428,6 +428,7 @@ void build_system(struct building *b)
 		for (int i = 0; i < model->n; i++)
 			fill_loads(b, s, i, load_form(b, s, i));
 	model->equations.owner = b->owner;
+	model->equations.reversed = b->reversed;
 	model->equations.residual = rows->residual;
 	model->equations.segment_equations = b->segment_equations;
 	model->equations.full = b->full;

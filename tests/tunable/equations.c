@@ -242,6 +242,13 @@ static bool turned(const struct model *model, const struct tuning *t, const mpq_
     return false;
 }
 
+/* Elements stand where masses are positive: those that are below 0 there alone have another side. */
+static bool same_sides(const struct equations *a, const struct equations *b, size_t n)
+{
+    return memcmp(a->owner, b->owner, n * sizeof *a->owner) == 0 &&
+           memcmp(a->reversed, b->reversed, n * sizeof *a->reversed) == 0;
+}
+
 static int try_text(const char *text)
 {
     const struct model *model = model_of(text, NULL, NULL);
@@ -257,7 +264,7 @@ static int try_text(const char *text)
             mpq_canonicalize(values[k]);
         }
         const struct model *there = model_of(text, model->spec, (const mpq_t *)values);
-        if (!there)
+        if (!there || !same_sides(&there->equations, &model->equations, (size_t)model->n))
             continue;                           /* singular there, or a load has gone */
         for (int k = t->given; k < t->params; k++)
             param_value(there->spec->tuned.tunable[k].symbol, values[k]);

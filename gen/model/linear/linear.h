@@ -54,6 +54,7 @@ struct equations {                  /* as they are written */
 	struct segment_equations *full;
 	struct irrationals irrationals;
 	int *owner;                 /* per coordinate: the row of its equation */
+	bool *reversed;             /* per written row: its sign is changed */
 	const struct atoms *atoms;
 	const struct node *moving_mass; /* a term by which the mass matrix is not constant; NULL: it is */
 	bool indefinite;            /* nothing shows that this one stays regular */
