@@ -183,8 +183,9 @@ static const char guards[] = "PL_HAS";
 static unsigned long long mark(void)
 {
 	unsigned long long hash = 0xcbf29ce484222325;
-	for (int i = 0; i < 2; i++)
-		for (const char *c = runtime_text(i ? "plreal.h" : "plrt.h"); *c; c++)
+	static const char *const file[] = { "plrt.h", "plreal.h", "events.h" };
+	for (int i = 0; i < 3; i++)
+		for (const char *c = runtime_text(file[i]); *c; c++)
 			hash = (hash ^ (unsigned char)*c) * 0x100000001b3;
 	return hash & 0xfffffffffffffff;
 }

@@ -112,15 +112,15 @@ static int stays_event_free(const pl_guards *m, const pl_contact *c, const real 
     for (k = first_guard(m, c->region); k < last_guard(m, c->region); k++) {
         const ptrdiff_t at = (ptrdiff_t)m->guard[k].row * n;
         real from, to, off, leaving, arriving;
-        from = dot(n, m->guard_row + at, x);
-        to = dot(n, m->guard_row + at, y);
-        off = dot(n, m->chord_error + at, work);
+        from = dot(n, m->guards.row + at, x);
+        to = dot(n, m->guards.row + at, y);
+        off = dot(n, m->guards.chord_error + at, work);
         if (larger(from, to) + off < m->limit[k]) {
             continue;
         }
-        off = dot(n, m->cubic_error + at, work);
-        leaving = dot(n, m->guard_tangent + at, x);
-        arriving = dot(n, m->guard_tangent + at, y);
+        off = dot(n, m->guards.cubic_error + at, work);
+        leaving = dot(n, m->guards.tangent + at, x);
+        arriving = dot(n, m->guards.tangent + at, y);
         if (!(larger(larger(from, to), larger(from + leaving, to - arriving)) + off < m->limit[k])) {
             return 0;
         }
@@ -138,7 +138,7 @@ static int stays_event_free_far(const pl_guards *m, const pl_contact *c, climb *
     look_at_bend(at, n, matrix_of(m->A, m, c->matrix), x, bend, work);
     for (k = first_guard(m, c->region); k < last_guard(m, c->region); k++) {
         const int row = m->guard[k].row;
-        const real *guard_row = m->guard_row + (ptrdiff_t)row * n;
+        const real *guard_row = m->guards.row + (ptrdiff_t)row * n;
         real from, to, off;
         from = dot(n, guard_row, x);
         to = dot(n, guard_row, y);
@@ -175,7 +175,7 @@ static void level(const pl_guards *m, int region, const pl_guard *g, const real 
  * interval, is passed already, also if it comes back. */
 static int is_turned(const pl_guards *m, int region, const pl_guard *g, const beyond *f)
 {
-    const real *guard_row = m->guard_row + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
+    const real *guard_row = m->guards.row + (ptrdiff_t)g->row * m->size, *row = m->row + g->expression * m->size;
     real apart = 0;
     int i;
     if (g->impact >= 0 || !(f->coefficient[0] > f->noise) || !(f->coefficient[1] < 0)) {
@@ -204,7 +204,7 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (k = first_guard(m, region); k < last_guard(m, region); k++) {
-        const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
+        const real *row = m->guards.row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
         real s, next;
         int has_left;
         expand_row(n, terms, row, coefficients, e);

@@ -127,7 +127,7 @@ static void vary_jump(const pl_guards *m, instant *at, int k)
 static void miss(const pl_guards *m, const instant *at, int k, const real *e)
 {
     pl_variation *v = at->v;
-    const real *row = m->guard_row + (ptrdiff_t)m->guard[k].row * m->size;
+    const real *row = m->guards.row + (ptrdiff_t)m->guard[k].row * m->size;
     real low = 0, high = 1, size = 0;
     int i;
     if (v == NULL || m->guard[k].impact < 0 || !(e[1] > 0) || !(slope_at(m->degree, e, 1) < 0)) {
@@ -169,7 +169,7 @@ static void meet_guard(const pl_guards *m, instant *at, int k)
     for (p = 0; p < v->columns; p++) {
         v->dg[p] = varied_row(v, p, v->matrices + OF_GUARDS, k, m->size, at->x);
     }
-    meet(m, at, m->guard_row + (ptrdiff_t)g->row * m->size, g->expression);
+    meet(m, at, m->guards.row + (ptrdiff_t)g->row * m->size, g->expression);
     v->sticks = g->impact < 0;
     v->upward = g->upward;
 }
@@ -478,19 +478,19 @@ static int find_resting(const pl_guards *m, const instant *at, resting *found)
 static real pull_of(const pl_guards *m, int k, const real *x)
 {
     const int n = m->size, guard_row = m->guard[k].row;
-    const real *row = m->guard_row + (ptrdiff_t)guard_row * n, *tangent = m->guard_tangent + (ptrdiff_t)guard_row * n;
+    const real *row = m->guards.row + (ptrdiff_t)guard_row * n, *tangent = m->guards.tangent + (ptrdiff_t)guard_row * n;
     real e, noise;
     e = dot(n, row, x);
     e -= m->limit[k];
     noise =
-        noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->guard_amplitude[guard_row]);
+        noise_of(sizes(n, row, x) + 3 * sizes(n, tangent, x) + magnitude(m->limit[k]) + m->guards.amplitude[guard_row]);
     return e > noise || e < -noise ? e : 0;
 }
 
 static int rises(const pl_guards *m, int region, int k, const real *x, real *work)
 {
     const int n = m->size;
-    return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guard_row + (ptrdiff_t)m->guard[k].row * n, x,
+    return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guards.row + (ptrdiff_t)m->guard[k].row * n, x,
                    work) > 0;
 }
 

@@ -478,8 +478,8 @@ typedef struct pl_units {
 #include "doubles.h"
 #undef PL_REAL
 
-/* The same as pl_guards_advance over h, faster in an event-free step.  Its chord_error is larger by 8 units in the last
- * place of |guard_row| + 3 |guard_tangent|, to cover rounding at the start of the step. */
+/* The same as pl_guards_advance over h, faster in an event-free step.  Its guards.chord_error is larger by 8 units in
+ * the last place of |guards.row| + 3 |guards.tangent|, to cover rounding at the start of the step. */
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
 /* Sets no lead: w has been the same since t = 0. */

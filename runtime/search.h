@@ -70,18 +70,17 @@
 
 #define PL_MATRICES PL_MATRIX, PL_KEPT(halvings), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_LADDER
 
+#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS)
 #if PL_GUARDS && PL_SLOTS > 0
 #define PL_GUARD_ERRORS PL_KEPT(guard_chord_error)[0], PL_KEPT(guard_cubic_error)[0]
-#define PL_GUARD_TABLES PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_GUARD_ERRORS
-#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_KEPT(guard_amplitude)
+#define PL_GUARD_TABLES {PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_GUARD_ERRORS, PL_KEPT(guard_amplitude)}
 #define PL_LISTS (const int *)0, PL_KEPT(guard), PL_KEPT(limit), (const int *)0
 #define PL_ENDED PL_KEPT(tangent)[0][0], PL_LISTS, PL_GUARD_TABLES, PL_AMPLITUDES
 #define PL_SET PL_KEPT(sets), PL_KEPT(held), PL_KEPT(value)[0]
 #define PL_BOUNDS PL_ENDED, PL_SET, 0, PL(impact), PL(speed)[0], PL(retreat)[0]
 #elif PL_GUARDS
 #define PL_GUARD_ERRORS PL_OF(guard_chord_error)[0], PL_OF(guard_cubic_error)[0]
-#define PL_GUARD_TABLES PL_OF(guard_row)[0], PL_OF(guard_tangent)[0], PL_GUARD_ERRORS
-#define PL_AMPLITUDES PL_OF(amplitude) + PL_FIRST(PL_SWITCHING_FUNCTIONS), PL_OF(guard_amplitude)
+#define PL_GUARD_TABLES {PL_OF(guard_row)[0], PL_OF(guard_tangent)[0], PL_GUARD_ERRORS, PL_OF(guard_amplitude)}
 #define PL_ENDED PL_OF(tangent)[0][0], PL(first), PL(guard), PL_OF(limit), PL(holding), PL_GUARD_TABLES, PL_AMPLITUDES
 #define PL_SET PL(sets), PL(held), PL_OF(value)[0]
 #define PL_SPEEDS PL_OF(speed)[PL_FIRST(PL_IMPACTS)], PL_OF(retreat)[PL_FIRST(PL_IMPACTS)]

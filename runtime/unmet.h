@@ -71,10 +71,10 @@ static PL_INLINE PL_TRUTH PL_UNMET(keeps)(const pl_guards *m, int k, const PL_VA
                                           const PL_VALUE *size)
 {
     const int row = m->guard[k].row;
-    const PL_VALUE from = PL_SUM(m->guard_row + row * PL_SIZE, x), to = PL_SUM(m->guard_row + row * PL_SIZE, end);
-    const PL_VALUE off = PL_SUM(m->chord_error + row * PL_SIZE, size);
+    const PL_VALUE from = PL_SUM(m->guards.row + row * PL_SIZE, x), to = PL_SUM(m->guards.row + row * PL_SIZE, end);
+    const PL_VALUE off = PL_SUM(m->guards.chord_error + row * PL_SIZE, size);
     return PL_BELOW(PL_LARGER(from, to) + off,
-                    PL_ALL_OF(m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->guard_amplitude[row])));
+                    PL_ALL_OF(m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->guards.amplitude[row])));
 }
 
 /* Row i of a product, with 0 in the place of -0 as the search has it.  Where what multiplies x_i is above 0 there is no
