@@ -231,6 +231,8 @@ static const struct source *source_of(struct work *w)
 	if (!model->equations.linearised)
 		return source;
 	request->definitions.count = 0;
+	if (w->options.print > PRINT_HEADER)
+		request->sensitivity = NULL;    /* by params that are none of the linear equations' */
 	request->linear.found = model->equations.point;
 	w->given = w->spec;
 	return source_text(format("%s, linearised", source->name), model->equations.linearised);

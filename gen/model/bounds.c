@@ -141,8 +141,10 @@ static void evaluate_param_range(void *context)
 		return;
 	param_value(param->symbol, value);
 	if (mpq_cmp(value, range->low) < 0 || mpq_cmp(value, range->high) > 0)
-		error(param->at, "the spec's own value has to be there", "param '%s' is %s, outside of its range",
-		      param->symbol->name, readable_text(value));
+		error(param->at,
+		      param->symbol->unit_written ? "a bound without a unit is in SI units, as this value is"
+						  : "the spec's own value has to be there",
+		      "param '%s' is %s, outside of its range", param->symbol->name, readable_text(value));
 }
 
 void evaluate_param_ranges(struct building *b)

@@ -254,6 +254,24 @@ static void report_missing(const struct building *b, int missing, int all)
 
 /* ---- whose equation it is, and with which sign ---- */
 
+/* Without a highest derivative a written equation is that of any coordinate in it to which a mass is given. */
+static bool owns_alone(const struct building *b, int written, int coord)
+{
+	const int row = b->owner[coord];
+	if (row >= written || can_own(b, row, coord, HIGHEST))
+		return true;
+	for (int k = 0; k < b->model->n; k++) {
+		const int other = b->owner[k];
+		if (k == coord || !can_own(b, row, k, ANY) || (other < written && can_own(b, other, k, HIGHEST)))
+			continue;
+		say_error(b->segment_equations->residual[row].at, "force EXPR on NAME says on which of them it acts",
+			  "is this the equation of %s or of %s? It has no %s", b->model->names.coord[coord],
+			  b->model->names.coord[k], highest_name(b->model, coord));
+		return false;
+	}
+	return true;
+}
+
 struct leading { struct building *b; struct point *start; const struct form *form; int coord; mpq_ptr value; };
 
 static void add_leading(void *context)
@@ -319,6 +337,9 @@ static void factors_at_start(struct building *b, int written, mpq_t *factor)
 static void orient_equations(struct building *b, int written)
 {
 	const int n = b->model->n;
+	for (int j = 0; j < n; j++)
+		if (!owns_alone(b, written, j))
+			return;
 	mpq_t *factor = rationals((size_t)written * (size_t)n);
 	factors_at_start(b, written, factor);
 	for (int i = 0; i < n; i++)
@@ -365,7 +386,7 @@ bool assign_equations(struct building *b)
 		report_missing(b, missing, all);
 	else if (written > 0 && b->spec->elements + b->spec->whens > 0)
 		orient_equations(b, written);
-	return all == n;
+	return all == n && !diagnostics_errors();
 }
 
 /* Over other coordinates than the written ones: equations combined as they are, and those of velocities that stand

@@ -316,12 +316,12 @@ static void print_equations(FILE *to, struct linearising *l)
 static const char *name_of_itself(const struct linearising *l, const char *name)
 {
 	const struct model *model = l->b->model;
-	const size_t length = strlen(name);
 	for (int i = 0; i < model->n; i++) {
-		const size_t own = strlen(model->names.coord[i]), primes = strspn(name + own, "'");
-		const bool depends = l->tangent && l->tangent->follows[primes < 2 ? primes : 2][i].slope;
-		if (strncmp(model->names.coord[i], name, own) == 0 && primes == length - own && !depends)
-			return format("%s%s", coordinate_name(l, i), name + own);
+		const size_t own = strlen(model->names.coord[i]);
+		const char *behind = strncmp(model->names.coord[i], name, own) == 0 ? name + own : "none";
+		const size_t primes = strspn(behind, "'");
+		if (primes == strlen(behind) && !(l->tangent && l->tangent->follows[primes < 2 ? primes : 2][i].slope))
+			return format("%s%s", coordinate_name(l, i), behind);
 	}
 	return NULL;
 }
