@@ -50,43 +50,18 @@ double spectral_radius(int n, const double *A)
 	return found ? radius : HUGE_VAL;
 }
 
-/* Row c and the one with the largest entry in column c change places; false: that is nothing beside what is left */
-static bool take_pivot(int n, int c, double complex *A, double complex *b)
-{
-	int pivot = c;
-	double most = 0;
-	for (int i = c; i < n; i++) {
-		pivot = cabs(A[i * n + c]) > cabs(A[pivot * n + c]) ? i : pivot;
-		for (int j = c; j < n; j++)
-			most = fmax(most, cabs(A[i * n + j]));
-	}
-	for (int j = 0; j < n && pivot != c; j++) {
-		const double complex swap = A[c * n + j];
-		A[c * n + j] = A[pivot * n + j];
-		A[pivot * n + j] = swap;
-	}
-	const double complex other = b[pivot];
-	b[pivot] = b[c];
-	b[c] = other;
-	return cabs(A[c * n + c]) > 1e-14 * most;
-}
-
 bool solve_complex(int n, double complex *A, double complex *b)
 {
-	bool regular = true;
-	for (int c = 0; c < n; c++) {
-		regular = take_pivot(n, c, A, b) && regular;
-		for (int i = c + 1; i < n; i++) {
-			const double complex factor = A[i * n + c] / A[c * n + c];
-			for (int j = c; j < n; j++)
-				A[i * n + j] -= factor * A[c * n + j];
-			b[i] -= factor * b[c];
-		}
-	}
-	for (int i = n - 1; i >= 0; i--) {
-		for (int j = i + 1; j < n; j++)
-			b[i] -= A[i * n + j] * b[j];
-		b[i] /= A[i * n + i];
-	}
+	SCRATCH int *pivot = ARRAY(int, n);
+	double most = 0;
+	for (int i = 0; i < n * n; i++)
+		most = fmax(most, cabs(A[i]));
+	bool regular = pl_factor_complex(n, (double *)A, pivot);
+	if (regular)
+		pl_solve_complex(n, (double *)A, pivot, (double *)b);
+	for (int i = 0; i < n && !regular; i++)
+		b[i] = HUGE_VAL;
+	for (int i = 0; i < n; i++)             /* factors have 1 over each pivot */
+		regular = regular && cabs(A[i * n + i]) * most < 1e14;
 	return regular;
 }
