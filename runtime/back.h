@@ -10,23 +10,13 @@
  * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
  * there are.  A seed is as large as what the column has without it, so that their difference loses nothing. */
 
-#if PL_INPUTS > 0
-#define PL_TAKES , u
-#define PL_GIVES , const real u[PL_INPUTS]
-#else
-#define PL_TAKES
-#define PL_GIVES
-#endif
-#if PL_SEEDED
-#define PL_ALONG , du
-#else
-#define PL_ALONG
-#endif
-
 typedef struct PL(back_work) {
     PL_TYPE after, seeded;
     PL(d) alone, ds; /* of the step without seeds; with them */
     real J[PL_OUTPUTS][PL_DERIVATIVES], seed[PL_OUTPUTS][PL_DERIVATIVES], lam[PL_STATES];
+#if PL_PEAKS > 0
+    real peak[PL_PEAKS]; /* what peaks are worth, until the step in which each has risen to what it is */
+#endif
 } PL(back_work);
 
 static real PL(d_size)(const real *value, int count, int apart)
@@ -50,6 +40,19 @@ static void PL(seed)(PL(d) *ds, int first, const real *scale)
     }
 }
 
+/* 0 of peaks, which follow no state */
+static real PL(worth)(const real *w, int o)
+{
+    real worth = w[o];
+#if PL_PEAKS > 0
+    int p;
+    for (p = 0; p < PL_PEAKS; p++) {
+        worth = PL(peak_output)[p] == o ? 0 : worth;
+    }
+#endif
+    return worth;
+}
+
 /* lam += (derivative of outputs by the state)^T w; work->J is what they have without a state's */
 static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES])
 {
@@ -64,7 +67,7 @@ static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES
         PL(out_d)(&b->after, &b->ds, b->seed);
         for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
             for (i = 0; i < PL_OUTPUTS; i++) {
-                lam[first + p] += w[i] * ((b->seed[i][p] - b->J[i][p]) / scale[p]);
+                lam[first + p] += PL(worth)(w, i) * ((b->seed[i][p] - b->J[i][p]) / scale[p]);
             }
         }
     }
@@ -96,6 +99,11 @@ static void PL(state_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real lam
         for (i = 0; i < PL_STATES && PL(d_input)[p] >= 0; i++) {
             b->alone.s[p][i] = 0;
         }
+#if PL_PEAKS > 0
+        for (i = 0; i < PL_PEAKS && PL(d_input)[p] >= 0; i++) {
+            b->alone.peak[i][p] = 0;
+        }
+#endif
 #endif
         scale[p] = PL(d_size)(b->alone.s[p], PL_STATES, 1);
     }
@@ -115,6 +123,11 @@ static void PL(state_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real lam
             for (i = 0; i < PL_STATES; i++) {
                 b->lam[j] += lam[i] * ((b->ds.s[p][i] - b->alone.s[p][i]) / scale[p]);
             }
+#if PL_PEAKS > 0
+            for (i = 0; i < PL_PEAKS; i++) {
+                b->lam[j] += b->peak[i] * ((b->ds.peak[i][p] - b->alone.peak[i][p]) / scale[p]);
+            }
+#endif
         }
     }
 #endif
@@ -131,8 +144,13 @@ static real PL(column_back)(const PL(back_work) *b, int p, const real *w, const 
         sum += lam[i] * b->alone.s[p][i];
     }
     for (i = 0; i < PL_OUTPUTS && w != NULL; i++) {
-        sum += w[i] * b->J[i][p];
+        sum += PL(worth)(w, i) * b->J[i][p];
     }
+#if PL_PEAKS > 0
+    for (i = 0; i < PL_PEAKS; i++) {
+        sum += b->peak[i] * b->alone.peak[i][p];
+    }
+#endif
     return sum;
 }
 
@@ -172,6 +190,11 @@ static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real
     PL(alone)(s, b PL_TAKES, 0, 1);
     if (w != NULL) {
         PL(outputs_back)(b, w, lam);
+#if PL_PEAKS > 0
+        for (p = 0; p < PL_PEAKS; p++) {
+            b->peak[p] += w[PL(peak_output)[p]];
+        }
+#endif
     }
     for (p = 0; p < PL_DERIVATIVES; p++) {
         sum = PL(column_back)(b, p, w, lam);
@@ -195,6 +218,22 @@ static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real
     (void)ub_before;
 #endif
     PL(state_back)(s, b PL_TAKES, lam);
+#if PL_PEAKS > 0
+    for (p = 0; p < PL_PEAKS; p++) {
+        b->peak[p] = PL_PEAK_OF(&b->after)[p] > PL_PEAK_OF(s)[p] ? 0 : b->peak[p];
+    }
+#endif
+}
+
+static void PL(begin_back)(PL(back_work) *b)
+{
+#if PL_PEAKS > 0
+    int p;
+    for (p = 0; p < PL_PEAKS; p++) {
+        b->peak[p] = 0;
+    }
+#endif
+    PL(init_d)(&b->after, &b->alone);
 }
 
 void PL(back)(const PL_TYPE *s PL_GIVES, const real *w, real lam[PL_STATES], real pb[PL_DERIVATIVES]
@@ -204,7 +243,7 @@ void PL(back)(const PL_TYPE *s PL_GIVES, const real *w, real lam[PL_STATES], rea
               )
 {
     PL(back_work) b;
-    PL(init_d)(&b.after, &b.alone);
+    PL(begin_back)(&b);
     PL(row_back)(s, &b PL_TAKES, w, lam, pb
 #if PL_SEEDED
                  , ub, ub_before
@@ -261,11 +300,11 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
     if (snapshots > PL_SNAPSHOTS) {
         snapshots = PL_SNAPSHOTS;
     }
-    PL(init_d)(&b.after, &b.alone);
+    PL(begin_back)(&b);
     at[0] = 0;
     snapshot[0] = *s;
     for (k = n; k > 0; k--) {
-        PL_TYPE now = snapshot[top];
+        struct PL_TYPE now = snapshot[top];
         row = at[top];
         while (row + 1 < k) {
             m = PL(apart)(k - row, snapshots - top);
@@ -315,6 +354,11 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
         for (i = 0; i < PL_STATES; i++) {
             pb[p] += lam[i] * ds->s[p][i];
         }
+#if PL_PEAKS > 0
+        for (i = 0; i < PL_PEAKS; i++) {
+            pb[p] += b.peak[i] * ds->peak[i][p];
+        }
+#endif
     }
     return steps;
 }

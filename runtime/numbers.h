@@ -23,6 +23,9 @@
 #ifndef PL_BOUNCES
 #define PL_BOUNCES 0
 #endif
+#ifndef PL_AROUND
+#define PL_AROUND 0
+#endif
 #ifndef PL_BY_VALUES
 #define PL_BY_VALUES 0
 #endif

@@ -73,7 +73,7 @@ static void values_at(const taylor *p, real s, real *value)
 
 /* |p| at the root of p' in a .. b, where p'' has one sign: Newton's method from where the chord of p' is 0.  Off by
  * `off` p is off by off^2/2 p''. */
-static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
+static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b, real *at)
 {
     real s = a + (b - a) * (slope_a / (slope_a - slope_b)), value[3];
     int k;
@@ -83,6 +83,7 @@ static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
         next = s - value[1] / value[2];
         next = next > a ? (next < b ? next : b) : a;
         off = pl_magnitude(next - s);
+        *at = next;
         if (off * off * pl_magnitude(value[2]) <= REAL_EPSILON / 4 * pl_magnitude(value[0])) {
             break;
         }
@@ -93,7 +94,7 @@ static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b)
 
 /* Between two points p is off its chord by at most (b - a)^2/8 max|p''|.  Where that may pass `peak`: one sign of p''
  * in between leaves one extreme at most; else half the interval. */
-static real largest(const taylor *p, real peak)
+static real largest(const taylor *p, real peak, real *at)
 {
     const real least = REAL_DIGITS > 30 ? (real)1 / (1 << 26) : (real)1 / (1 << 12);
     real a = 0, width = 1, at_a[3], at_b[3], middle[3];
@@ -108,7 +109,10 @@ static real largest(const taylor *p, real peak)
                 continue;
             }
             if ((at_a[1] < 0) != (at_b[1] < 0)) {
-                peak = larger(peak, extreme(p, a, b, at_a[1], at_b[1]));
+                real top_at;
+                const real top = extreme(p, a, b, at_a[1], at_b[1], &top_at);
+                *at = top > peak ? top_at : *at;
+                peak = larger(peak, top);
             }
         }
         a = b;
@@ -230,7 +234,7 @@ static int expand(const slopes *A, real d, real *x, taylor *p, real *work)
 }
 
 /* Part by part, of which there are 2^halvings; below 0: these are too long */
-static real search(const slopes *A, real h, int halvings, const real *start, real peak, real *work)
+static real search(const slopes *A, real h, int halvings, const real *start, real peak, real *when, real *work)
 {
     const int size = A->size;
     const int32_t parts = (int32_t)1 << halvings;
@@ -246,20 +250,23 @@ static real search(const slopes *A, real h, int halvings, const real *start, rea
             return -1;
         }
         bound_derivatives(&p);
-        if (part + 1 < parts) {
-            peak = larger(peak, pl_magnitude(p.end));
+        if (part + 1 < parts && pl_magnitude(p.end) > peak) {
+            peak = pl_magnitude(p.end);
+            *when = (real)(part + 1) / (real)parts;
         }
         if (pl_magnitude(p.c[1]) < p.second && !(bound_of(&p) <= peak)) {      /* else it only rises, or stays below */
-            peak = largest(&p, peak);
+            real at = -1;
+            peak = largest(&p, peak, &at);
+            *when = at >= 0 ? ((real)part + at) / (real)parts : *when;
         }
     }
     return peak;
 }
 
 real pl_peak(int size, const real *A, const real *row, const real *bend, real h, const real *x, real end, real peak,
-             real *work)
+             real *when, real *work)
 {
-    const real most = larger(pl_magnitude(product(size, row, x)), pl_magnitude(end));
+    const real begin = pl_magnitude(product(size, row, x)), most = larger(begin, pl_magnitude(end));
     real off = 0, found = -1;
     slopes listed;
     int i;
@@ -272,12 +279,15 @@ real pl_peak(int size, const real *A, const real *row, const real *bend, real h,
     if (!(most - most <= 0) || !(peak - peak <= 0)) {     /* not finite */
         return peak - peak <= 0 ? most : peak;
     }
-    peak = larger(peak, most);
+    if (most > peak) {
+        peak = most;
+        *when = begin >= most ? 0 : 1;
+    }
     list_entries(size, A, &listed);
     listed.output = row;
     listed.places = list_places(size, row, listed.place);
     for (i = 0; i <= MOST_HALVINGS && found < 0; i++) {
-        found = search(&listed, h, i, x, peak, work);
+        found = search(&listed, h, i, x, peak, when, work);
     }
     return found < 0 ? peak : found;
 }
@@ -477,6 +487,7 @@ real pl_peak_begin(pl_peak_values *l, real begin, real end, real peak)
 {
     const real most = larger(pl_magnitude(begin), pl_magnitude(end));
     l->peak = larger(peak, most);
+    l->when = pl_magnitude(begin) >= most ? 0 : 1;
     l->value[0] = begin;
     l->value[PL_PEAK_TIMES] = end;
     l->apart = l->time = PL_PEAK_TIMES / 2;
@@ -493,6 +504,7 @@ real pl_peak_next(pl_peak_values *l, real value)
     if (!(value - value <= 0)) {
         return -1;
     }
+    l->when = pl_magnitude(value) > l->peak ? l->at : l->when;
     l->peak = larger(l->peak, pl_magnitude(value));
     if (l->time > PL_PEAK_TIMES) {
         take_try(l, l->at, pl_magnitude(value));

@@ -4,6 +4,7 @@
  *
  *     PL_PEAKS, PL(peak_output)[]       how many such outputs, and which
  *     PL_BY_VALUES                      1: by values.  PL_RAMPS: of inputs, some ramp
+ *     PL_DERIVATIVES                    above 0: derivatives.h asks when they are
  *
  * and else
  *
@@ -23,7 +24,7 @@
 static void PL(one_step)(PL_TYPE *s PL_TAKEN);
 static void PL(now)(const PL_TYPE *s, real out[PL_OUTPUTS]);
 
-#if PL_BY_VALUES
+#if PL_BY_VALUES || PL_DERIVATIVES > 0
 
 /* Outputs `part` of a step after its start, s, at whose end it is `after`; then: for it to work in */
 static void PL(values)(const PL_TYPE *s, const PL_TYPE *after, const real *u, real part, PL_TYPE *then,
@@ -49,9 +50,13 @@ static void PL(values)(const PL_TYPE *s, const PL_TYPE *after, const real *u, re
     (void)u;
 }
 
-/* Larger values inside the step.  Whether it is as smooth as its ends would show in the next */
+#endif
+
+#if PL_BY_VALUES
+
+/* Larger values inside the step, and when.  Whether it is as smooth as its ends would show in the next */
 static PL_APART int PL(look_inside)(const PL_TYPE *s, const PL_TYPE *after, const real *u, int o, real begin,
-                                    real end, real *peak)
+                                    real end, real *peak, real *when)
 {
     PL_TYPE then = *s;
     pl_peak_values looked;
@@ -61,6 +66,7 @@ static PL_APART int PL(look_inside)(const PL_TYPE *s, const PL_TYPE *after, cons
         PL(values)(s, after, u, part, &then, out);
         part = pl_peak_next(&looked, out[o]);
     }
+    *when = looked.peak > *peak ? looked.when : -1;
     *peak = looked.peak;
     return looked.apart >= PL_PEAK_TIMES / 8;
 }
@@ -69,7 +75,7 @@ static PL_APART int PL(look_inside)(const PL_TYPE *s, const PL_TYPE *after, cons
 void PL(step)(PL_TYPE *s PL_TAKEN)
 {
     const PL_TYPE before = *s;
-    real begin[PL_OUTPUTS], end[PL_OUTPUTS];
+    real begin[PL_OUTPUTS], end[PL_OUTPUTS], when;
     int p;
     PL(now)(s, begin);
     PL(one_step)(s PL_GIVEN);
@@ -79,7 +85,7 @@ void PL(step)(PL_TYPE *s PL_TAKEN)
         const real rise = end[o] - begin[o], bend = pl_magnitude(rise - s->rise[p]);
         const real from = pl_magnitude(begin[o]), to = pl_magnitude(end[o]);
         if (!((from > to ? from : to) + bend <= s->peak[p])) {
-            const int smooth = PL(look_inside)(&before, s, PL_THE_INPUTS, o, begin[o], end[o], &s->peak[p]);
+            const int smooth = PL(look_inside)(&before, s, PL_THE_INPUTS, o, begin[o], end[o], &s->peak[p], &when);
             s->rise[p] = smooth ? rise : (real)1e30;
         } else {
             s->rise[p] = rise;
@@ -94,11 +100,11 @@ static void PL(begin_step)(const PL_TYPE *s, const real *u, real x[PL_SIZE]);
 /* Larger values inside the step from x to outputs `end`, into peak[] */
 static void PL(look)(const PL_TYPE *s, const real x[PL_SIZE], const real end[PL_OUTPUTS], real peak[PL_PEAKS])
 {
-    real work[PL_PEAK_WORK(PL_SIZE)];
+    real work[PL_PEAK_WORK(PL_SIZE)], when;
     int p;
     for (p = 0; p < PL_PEAKS; p++) {
         peak[p] = pl_peak(PL_SIZE, PL_SLOPE[0], PL_PEAK_ROW(&s->coeffs, p), PL_BEND[p], PL_H, x,
-                          end[PL(peak_output)[p]], peak[p], work);
+                          end[PL(peak_output)[p]], peak[p], &when, work);
     }
     (void)s;
 }
@@ -137,6 +143,33 @@ void PL(step)(PL_TYPE *s PL_TAKEN)
     PL(look)(s, x, end, s->peak);
 }
 
+#endif
+
+#if PL_DERIVATIVES > 0
+/* The largest |output| above `low` of the step from s to `after`, and when, as a part of it; else `low`, and -1 */
+static real PL(top)(const PL_TYPE *s, const PL_TYPE *after, const real *u, int p, real low, real *when)
+{
+    const int o = PL(peak_output)[p];
+    real end[PL_OUTPUTS];
+#if PL_BY_VALUES
+    real begin[PL_OUTPUTS], most;
+    PL(now)(s, begin);
+#else
+    real x[PL_SIZE], work[PL_PEAK_WORK(PL_SIZE)];
+    PL(begin_step)(s, u, x);
+#endif
+    *when = -1;
+    PL(now)(after, end);
+#if PL_BY_VALUES
+    most = pl_magnitude(begin[o]) > pl_magnitude(end[o]) ? pl_magnitude(begin[o]) : pl_magnitude(end[o]);
+    if (most + pl_magnitude(end[o] - begin[o] - s->rise[p]) > low) {
+        (void)PL(look_inside)(s, after, u, o, begin[o], end[o], &low, when);
+    }
+    return low;
+#else
+    return pl_peak(PL_SIZE, PL_SLOPE[0], PL_PEAK_ROW(&s->coeffs, p), PL_BEND[p], PL_H, x, end[o], low, when, work);
+#endif
+}
 #endif
 
 void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS])

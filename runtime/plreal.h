@@ -71,10 +71,10 @@ PL_REAL pl_until(PL_REAL t0, uint64_t k, pl_two h, pl_two change);
 
 /* Returns the larger of `peak` and the maximum of |row . x(tau)| on 0 <= tau <= h, where x' = A x starts from x, of
  * `size` entries, and `end` is row . x(h).  bend . |x| bounds the distance of row . x(tau) from its chord, which
- * settles most steps at once; otherwise every extremum of its Taylor polynomial is found.  Returns not a number if the
- * output is not a number. */
+ * settles most steps at once; otherwise every extremum of its Taylor polynomial is found.  *when: where it is above
+ * `peak`, at which part of h.  Returns not a number if the output is not a number. */
 PL_REAL pl_peak(int size, const PL_REAL *A, const PL_REAL *row, const PL_REAL *bend, PL_REAL h, const PL_REAL *x,
-                PL_REAL end, PL_REAL peak, PL_REAL *work);
+                PL_REAL end, PL_REAL peak, PL_REAL *when, PL_REAL *work);
 
 /* Computes that bound, `size` entries: h^2/8 times the maximum of |row A^2 e^{A tau}| on 0 .. h, entry by entry. */
 void pl_peak_bend(int size, const PL_REAL *A, const PL_REAL *row, PL_REAL h, PL_REAL *bend, PL_REAL *work);
@@ -85,7 +85,7 @@ void pl_peak_bend(int size, const PL_REAL *A, const PL_REAL *row, PL_REAL h, PL_
  * Kinks and jumps only make it slower. */
 #define PL_PEAK_TIMES 64
 typedef struct pl_peak_values {
-    PL_REAL peak;                      /* largest size so far */
+    PL_REAL peak, when;                /* largest size so far; its time in h, if it is of this step */
     PL_REAL value[PL_PEAK_TIMES + 1];
     PL_REAL at;                        /* time of the value asked for, in h */
     PL_REAL a, b, s[3], size[3];       /* a maximum is between a and b; the best three times there and their sizes */

@@ -13,6 +13,7 @@
 #undef PL_REFRESHED
 #undef PL_ANY_STEP
 #undef PL_ARGUMENTS
+#undef PL_AROUND
 #undef PL_AT
 #undef PL_DECLARED
 #undef PL_BESIDE
@@ -231,6 +232,7 @@
 #undef PL_PARTS
 #undef PL_PASS_WORK
 #undef PL_PEAKS
+#undef PL_PEAK_OF
 #undef PL_PEAK_ROW
 #undef PL_PHASES
 #undef PL_PHASE_RATE

@@ -144,7 +144,7 @@ static struct symbol *add_like(const struct varying *v, const struct symbol *lik
 	struct symbol *s = NEW(struct symbol);
 	*s = (struct symbol){ .kind = like->kind, .name = format("%s_%s", like->name, v->suffix), .at = like->at,
 			      .statement = like->statement, .part = like->part, .length = like->length, .used = true,
-			      .hold = like->hold, .peak = like->peak };
+			      .hold = like->hold };
 	add_symbol(v->spec, s);
 	return s;
 }
@@ -390,6 +390,8 @@ void add_derivatives(struct spec *spec, int first, int count)
 	spec->joined.columns = count;
 	spec->joined.own = before.components;
 	spec->joined.stride = before.components + before.timed;
+	for (struct symbol *s = spec->first; s; s = s->next)
+		s->peak = false;                      /* the model's own outputs say when they were largest */
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
 		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };

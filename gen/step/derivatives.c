@@ -156,9 +156,9 @@ static void derive_delays(const struct step *step, struct derivatives *d)
 			struct node *node = slope_of_delay(step->model->spec, by, delays->delay[k].symbol);
 			if (is_zero_node(node))
 				continue;
-			if (has_remainder(step) || step->model->switching)
+			if (has_remainder(step) || step->model->switching || has_peak(step->model))
 				error(by->at, NULL, "a derivative by '%s', which delays an input, is built for linear "
-				      "models", by->name);
+				      "models%s", by->name, has_peak(step->model) ? " without peaks" : "");
 			collect_constant(&collector, node, slope);
 			late[p * delays->count + k] = round_rational(slope);
 			d->late = late;
@@ -193,6 +193,9 @@ static void derive(void *context)
 		struct derivative_block *block = MORE(d->block, d->blocks);
 		*block = (struct derivative_block){ first, count, NULL };
 		d->block[d->blocks - 1].step = step_of(step, first, count);
+		if (has_peak(step->model) && !d->block[d->blocks - 1].step->series.emitted)
+			error(spec->sensitivity[first].at, "with fewer states, or by fewer params at once",
+			      "a sensitivity of peaks needs derivatives inside steps, which this model has none of");
 	}
 	step->derivatives = d;
 }

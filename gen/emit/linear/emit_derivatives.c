@@ -11,6 +11,7 @@
 #include "model/tunable/tuning.h"
 #include "step/regions/regions.h"
 #include "step/linear/forms.h"
+#include "step/linear/rows.h"
 
 #include <string.h>
 
@@ -89,6 +90,8 @@ static void emit_derivative_struct(const struct emitter *e)
 		    column_count(d->block[b].columns));
 	if (d->apart)
 		say(e, "    double left[$N_STATES], time;  /* of s, when both were stepped last */\n");
+	if (has_peaks(e))
+		say(e, "    double peak[%d][$N_D];      /* of peaks so far */\n", peak_outputs(e->model));
 	if (d->varied)
 		say(e, "    double scale[$N_STATES];    /* the largest size of each state so far */\n");
 	say(e, "    unsigned status;            /* 0, or PL_D_... bits */\n"
@@ -373,10 +376,17 @@ static void emit_keep_seeds(const struct emitter *e)
 	}
 }
 
+/* Where there are peaks NAME_step_d and NAME_out_d are those of derivatives.h around it. */
+static void open_step(const struct emitter *e)
+{
+	open_function(e, NULL, has_peaks(e) ? "static void $n_one_step_d($n *s, $n_d *ds%s)"
+					    : "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
+}
+
 static void emit_steps_beside(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
-	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
+	open_step(e);
 	for (int b = 0; b < d->blocks; b++)
 		say(e, "    %s_step_beside(&ds->block%d, s, ds, %s);\n", e->beside[b].name, b, samples_beside(e));
 	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
@@ -393,7 +403,7 @@ static void emit_step_of_all(const struct emitter *e)
 		emit_steps_beside(e);
 		return;
 	}
-	open_function(e, NULL, "void $n_step_d($n *s, $n_d *ds%s)", input_parameters(e));
+	open_step(e);
 	if (!d->varied)
 		emit_state_now(e);
 	for (int b = 0; b < d->blocks; b++)
@@ -433,7 +443,9 @@ static void emit_outputs_of_all(const struct emitter *e)
 	const struct derivatives *d = e->step->derivatives;
 	if (e->model->declared_outputs && d->varied)
 		return;
-	open_function(e, NULL, "void $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])");
+	open_function(e, NULL, has_peaks(e)
+		      ? "static void $n_now_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])"
+		      : "void $n_out_d(const $n *s, const $n_d *ds, double J[$N_OUTPUTS][$N_D])");
 	if (e->model->declared_outputs && d->apart) {
 		for (int b = 0; b < d->blocks; b++)
 			say(e, "    %s_out_beside(s, ds, &ds->block%d, J);\n", e->beside[b].name, b);
@@ -525,9 +537,14 @@ static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "BY_PHI", !around && is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi },
+		   { "BY_PHI", !around && is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi &&
+			     !has_peaks(e) },
 		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
-		   { "SEGMENTS", row ? e->model->system.segments : 1 });
+		   { "SEGMENTS", row ? e->model->system.segments : 1 },
+		   { "PEAKS", peak_outputs(e->model) }, { "AROUND", around },
+		   { "BY_VALUES", peaks_by_values(e->step) });
+	if (has_peaks(e))
+		say_macro(e, "PEAK_OF(s)", around ? "(s)->core.peak" : "(s)->peak");
 	say_include(e, "derivatives.h");
 }
 
@@ -537,6 +554,8 @@ void emit_derivatives_around(const struct emitter *e)
 	static const char *const tables[] = { "d_initial", "d_names", "d_by", "init_beside" };
 	for (size_t i = 0; i < sizeof tables / sizeof *tables - !e->step->derivatives->apart; i++)
 		say(e, "#define $n_%s $n_core_%s\n", tables[i], tables[i]);
+	if (has_peaks(e))
+		say(e, "#define $n_peak_output $n_core_peak_output\n");
 	emit_derivatives_of_sizes(e, 0);
 }
 

@@ -90,7 +90,8 @@ static void emit_include(const struct emitter *e)
 	emit_sizes(e, "peaks.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
 		   { "SIZE", e->step->layout.size }, { "PEAKS", peak_outputs(e->model) }, { "OWN", own },
-		   { "REACHES", has_reach(e) }, { "BY_VALUES", 0 });
+		   { "REACHES", has_reach(e) }, { "BY_VALUES", 0 }, { "RAMPS", e->ramps },
+		   { "DERIVATIVES", e->step->derivatives ? e->step->derivatives->columns : 0 });
 	say_macro(e, "SLOPE", own ? "s->coeffs.slope" : spell(e, "$n_slope"));
 	say_macro(e, "BEND", own ? "s->coeffs.bend" : spell(e, "$n_peak_bend"));
 	say_macro(e, "PEAK_ROW(c, p)", peak_row_text(e));
@@ -118,7 +119,8 @@ static void emit_values(const struct emitter *e)
 	emit_peak_places(e);
 	emit_sizes(e, "peaks.h", { "STATES", e->system->states }, { "INPUTS", given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs },
-		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", 1 }, { "RAMPS", e->ramps });
+		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", 1 }, { "RAMPS", e->ramps },
+		   { "DERIVATIVES", e->step->derivatives ? e->step->derivatives->columns : 0 });
 	say_include(e, "peaks.h");
 }
 

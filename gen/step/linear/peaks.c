@@ -38,7 +38,8 @@ static const char *objection(const struct step *step, const struct output *outpu
 {
 	if (!step->series.emitted)
 		return "the largest |pole| times h is above 8";
-	const struct input *input = peaks_by_values(step) ? smooth_input(step->model, output) : NULL;
+	const bool by_values = peaks_by_values(step) || step->model->spec->sensitivities > 0;
+	const struct input *input = by_values ? smooth_input(step->model, output) : NULL;
 	return input ? format("it reads %s, which goes through more than two samples", input->name) : NULL;
 }
 
