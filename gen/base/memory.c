@@ -14,20 +14,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* The last bytes of both are the size of the block that begins after them. */
 struct chunk {
 	_Alignas(max_align_t) struct chunk *before;
 	struct chunk *after;
-	size_t unused, size;
+	size_t unused;
 };
-struct cell {                       /* of a slab; its block begins after it */
+struct cell {                       /* of a slab */
 	_Alignas(max_align_t) struct cell *next;        /* where it is free */
-	size_t size;
 };
 struct slab {
 	_Alignas(max_align_t) struct slab *before;
 };
-_Static_assert(offsetof(struct chunk, size) + sizeof(size_t) == sizeof(struct chunk), "size stands before its block");
-_Static_assert(offsetof(struct cell, size) + sizeof(size_t) == sizeof(struct cell), "size stands before its block");
+_Static_assert(offsetof(struct chunk, unused) + sizeof(size_t) < sizeof(struct chunk), "there is room for the size");
+_Static_assert(sizeof(struct cell *) + sizeof(size_t) <= sizeof(struct cell), "there is room for the size");
 
 #ifdef __SANITIZE_ADDRESS__
 enum { SMALL = 0 };                 /* so that every block is watched */

@@ -10,17 +10,17 @@
 
 static bool shown;
 
-static long milliseconds(clockid_t clock)
+static int64_t milliseconds(clockid_t clock)
 {
 	struct timespec t;
 	clock_gettime(clock, &t);
-	return 1000 * (long)t.tv_sec + t.tv_nsec / 1000000;
+	return 1000 * (int64_t)t.tv_sec + t.tv_nsec / 1000000;
 }
 
 static void change_line(const char *what, int done, int all)
 {
-	static long start, last;
-	long now = milliseconds(CLOCK_MONOTONIC);
+	static int64_t start, last;
+	int64_t now = milliseconds(CLOCK_MONOTONIC);
 	if (done == 0)
 		start = now;
 	if (now - start < 1000 || now - last < 200)
@@ -33,8 +33,8 @@ static void change_line(const char *what, int done, int all)
 
 static void add_line(const char *what, int done, int all)
 {
-	static long last, soonest;              /* soonest: by the other clock, which is read in a tenth of the time */
-	long now;
+	static int64_t last, soonest;           /* soonest: by the other clock, which is read in a tenth of the time */
+	int64_t now;
 	if (milliseconds(CLOCK_MONOTONIC) < soonest)
 		return;
 	now = milliseconds(CLOCK_PROCESS_CPUTIME_ID);
@@ -42,7 +42,7 @@ static void add_line(const char *what, int done, int all)
 	if (now - last < 10000)
 		return;
 	last = now;
-	fprintf(stderr, "plgen: %s, %d of %d, %ld s\n", what, done, all, now / 1000);
+	fprintf(stderr, "plgen: %s, %d of %d, %d s\n", what, done, all, (int)(now / 1000));
 	fflush(stderr);
 }
 

@@ -3,7 +3,9 @@
 #include "base/base.h"
 
 #include <errno.h>
+#ifndef __wasm__
 #include <setjmp.h>
+#endif
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +23,7 @@ static struct diagnostic *said;
 static int said_count, error_count;
 static const char *context_note;
 static bool unheard;               /* warnings are forgotten */
-static jmp_buf *guard;
+static bool guarded;                /* a statement is under way, which `abandon` leaves */
 static struct place working;
 
 static void say(struct place at, const char *severity, const char *note, const char *fmt, va_list args)
@@ -40,7 +42,7 @@ static void say(struct place at, const char *severity, const char *note, const c
 	if (said_count == LIMIT_ERRORS && strcmp(severity, "error") == 0) {
 		message = format("more errors than the limit of %d: what comes after them is not looked at",
 				 LIMIT_ERRORS);
-		guard = NULL;                   /* the end */
+		guarded = false;                   /* the end */
 		note = NULL;
 	}
 	const int order = said_count;
@@ -108,7 +110,7 @@ struct place working_at(void)
 
 void give_up(const char *message)
 {
-	guard = NULL;
+	guarded = false;
 	if (working.source) {
 		error(working, NULL, "%s", message);
 	} else {
@@ -117,25 +119,49 @@ void give_up(const char *message)
 	}
 }
 
+/* ---- out of a statement ---- */
+
+#ifdef __wasm__                     /* which has no setjmp: the page catches what is thrown */
+#define FROM_PAGE(name) __attribute__((import_module("page"), import_name(name)))
+_Noreturn FROM_PAGE("leave") void leave(void);
+FROM_PAGE("ends") bool ends(void (*work)(void *), void *context);
+#else
+static jmp_buf *mark;
+
+static _Noreturn void leave(void)
+{
+	longjmp(*mark, 1);
+}
+
+/* false: it was left */
+static bool ends(void (*work)(void *), void *context)
+{
+	jmp_buf here, *outer = mark;
+	mark = &here;
+	if (setjmp(here) == 0) {
+		work(context);
+		mark = outer;
+		return true;
+	}
+	mark = outer;
+	return false;
+}
+#endif
+
 void abandon(void)
 {
-	if (guard)
-		longjmp(*guard, 1);
+	if (guarded)
+		leave();
 	diagnostics_print(stderr);
 	exit(1);
 }
 
 bool statement_guard(void (*work)(void *), void *context)
 {
-	jmp_buf here, *outer = guard;
-	bool done = false;
-	if (setjmp(here) == 0) {
-		guard = &here;
-		work(context);
-		guard = outer;
-		return true;
-	}
-	guard = outer;
+	const bool outer = guarded;
+	guarded = true;
+	const bool done = ends(work, context);
+	guarded = outer;
 	return done;
 }
 

@@ -181,9 +181,11 @@ static void add_drawings(struct dimensions *w)
 		const struct drawing *d = &spec->page.drawing[i];
 		struct node *node[MOST_DRAWN];
 		const int count = nodes_of_drawing(d, node);
-		for (int k = 0; k < count; k++)
+		for (int k = 0; k < count; k++) {
+			const struct dimension of = dimension_of(w, node[k]);   /* it may add groups */
 			if (node[k] != d->turn)
-				add_term(&w->group[group], node[k], NULL, node[k]->start, dimension_of(w, node[k]));
+				add_term(&w->group[group], node[k], NULL, node[k]->start, of);
+		}
 		if (d->turn)
 			need_number(w, "turned", d->turn, dimension_of(w, d->turn));
 	}

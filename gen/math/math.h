@@ -5,6 +5,8 @@
 
 #include "base/base.h"
 
+#include <limits.h>
+
 /* ---- matrix.c: rational matrices, and integer ones ---- */
 
 /* The block of each row (0 .. n-1) and column (n .. 2n-1) of an n x n matrix, numbered in the order of their first
@@ -145,7 +147,7 @@ void rectangle_evaluate(struct rectangle *z, struct poly p, const struct rectang
 
 /* ---- rectangles.c: vectors and matrices of them ---- */
 
-#define NO_SIZE (-(1L << 60))                               /* of what is exactly 0 */
+#define NO_SIZE (LONG_MIN / 8)                              /* of what is exactly 0 */
 struct rectangle *rectangles(int count, int precision);     /* 0 */
 #define RECTANGLES __attribute__((cleanup(clear_rectangles))) struct rectangle /* RECTANGLES *z = rectangles(n, 64); */
 void clear_rectangles(struct rectangle **z);

@@ -21,7 +21,7 @@ enum {
 	LARGEST_WORK = 4 * LIMIT_PRECISION,
 	BALANCING_SWEEPS = 24
 };
-static const long LARGEST_EXPONENT = 1L << 56;      /* bits; entries below 2^-this become 0 with that radius */
+static const long LARGEST_EXPONENT = LONG_MAX / 128;        /* bits; entries below 2^-this become 0 with that radius */
 
 /* ---- the problem and its plan ---- */
 
@@ -185,20 +185,21 @@ static int series_length(struct magnitude b, long bits, struct magnitude *tail)
 }
 
 /* Products of balls that a plan takes: powers, blocks, squarings */
-static long cost(const struct taylor *t, long halvings, int block, int length)
+static int64_t cost(const struct taylor *t, long halvings, int block, int length)
 {
-	long fill = t->filled / t->n + 1, sum = halvings * t->filled * fill;
+	int64_t fill = t->filled / t->n + 1, sum = halvings * t->filled * fill;
 	for (int q = 2; q <= block; q++)
 		sum += t->density[1] * (t->density[q - 1] / t->n + 1);
-	long blocks = (length + block - 1) / block;
-	return sum + (blocks - 1) * (t->density[block] * (fill + 1) + (long)(block - 1) * t->filled);
+	int64_t blocks = (length + block - 1) / block;
+	return sum + (blocks - 1) * (t->density[block] * (fill + 1) + (block - 1) * t->filled);
 }
 
 /* The cheapest way to 2^-bits of each entry: its least size is some first-reached one's, and an estimate is enough. */
 static bool find_plan(const struct taylor *t, long bits, struct plan *best)
 {
 	enum { FURTHER = 48 };
-	long log = t->norm.m ? magnitude_log(t->norm) : 0, from = log > 3 ? log - 3 : 0, least_cost = LONG_MAX;
+	long log = t->norm.m ? magnitude_log(t->norm) : 0, from = log > 3 ? log - 3 : 0;
+	int64_t least_cost = INT64_MAX;
 	if (from + FURTHER > LARGEST_HALVINGS)
 		return false;
 	for (long halvings = from; halvings <= from + FURTHER; halvings++) {
@@ -210,7 +211,7 @@ static bool find_plan(const struct taylor *t, long bits, struct plan *best)
 		b.e -= halvings;
 		int length = series_length(b, target - bits, &plan.tail);
 		for (plan.block = 1; length && plan.block <= LARGEST_BLOCK && plan.block <= length; plan.block++) {
-			long price = cost(t, halvings, plan.block, length);
+			int64_t price = cost(t, halvings, plan.block, length);
 			plan.blocks = (length + plan.block - 1) / plan.block;
 			if (price < least_cost) {
 				*best = plan;
@@ -218,7 +219,7 @@ static bool find_plan(const struct taylor *t, long bits, struct plan *best)
 			}
 		}
 	}
-	return least_cost != LONG_MAX;
+	return least_cost != INT64_MAX;
 }
 
 /* ---- the exponential ---- */

@@ -19,8 +19,8 @@ struct taylor {
 	int depth;                  /* largest distance */
 	/* per distance: log2 of the least entry of D^-1 |A tau|^k/k! D first reached there */
 	long *least;
-	long density[LARGEST_BLOCK + 1];    /* nonzeros of B^q */
-	long filled;                /* and of e^B */
+	int64_t density[LARGEST_BLOCK + 1]; /* nonzeros of B^q */
+	int64_t filled;             /* and of e^B */
 	int precision;              /* what `value` is known to; 0: nothing */
 	long loss;                  /* bits lost on the way, as far as known */
 	struct balls value;

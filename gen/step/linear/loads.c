@@ -9,7 +9,7 @@
 struct transition {
 	int m;                      /* -1: nothing */
 	long cosine, sine;          /* before the binomial factor */
-	unsigned long binomial;
+	uint64_t binomial;
 };
 
 static struct transition transition_of(const struct load *load, int to, int from)
@@ -18,11 +18,11 @@ static struct transition transition_of(const struct load *load, int to, int from
 	bool to_sine = to % trig, from_sine = from % trig;
 	struct transition t = { k - j, to_sine == from_sine, to_sine == from_sine ? 0 : to_sine ? 1 : -1, 1 };
 	for (int i = 0; i < k - j; i++)         /* small: powers of loads are limited */
-		t.binomial = t.binomial * (unsigned long)(k - i) / (unsigned long)(i + 1);
+		t.binomial = t.binomial * (uint64_t)(k - i) / (uint64_t)(i + 1);
 	return t;
 }
 
-static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, unsigned long binomial)
+static void add_scaled(mpq_ptr sum, mpq_srcptr q, long factor, uint64_t binomial)
 {
 	RATIONAL scaled = RATIO(factor, 1), multiple = RATIO((long)binomial, 1);
 	mpq_mul(scaled, scaled, multiple);
