@@ -232,6 +232,7 @@ struct linear_system {              /* M x = f, n x n, row by row */
 struct form *kept_solution(struct collector *c, const struct node *node, const struct linear_system *e, int component);
 /* Of such an atom, with these operands in the place of its own: written as another */
 struct linear_system system_of(const struct atom *atom, const struct form *const *operand);
+bool is_constant_system(const struct atom *atom);          /* M of such an atom is: constraints are solved for */
 bool same_solution(const struct atom *a, const struct atom *b); /* of two such: they differ in the component alone */
 
 /* ---- calculus.c: derivatives of forms, and forms at a point ---- */

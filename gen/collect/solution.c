@@ -26,6 +26,12 @@ static bool all_constant(int count, const struct form *const *x)
 	return true;
 }
 
+bool is_constant_system(const struct atom *atom)
+{
+	return atom->kind == ATOM_SOLUTION &&
+	       all_constant(atom->operands - rows_of(atom->operands), atom->operand + rows_of(atom->operands));
+}
+
 /* All components ask for that of the same matrix. */
 static const mpq_t *inverse_of(const struct node *node, int n, const mpq_t *value)
 {
@@ -51,6 +57,12 @@ static struct form *constant_solution(struct collector *c, const struct node *no
 	return x;
 }
 
+/* Multipliers stay unknowns of their own, though M is constant: then a step projects onto their constraints. */
+static bool has_multipliers(const struct collector *c, const struct linear_system *e)
+{
+	return e->written && e->written->highest[e->n - 1].index >= c->frame->coords;
+}
+
 struct form *kept_solution(struct collector *c, const struct node *node, const struct linear_system *e, int component)
 {
 	const int n = e->n, cells = n * n;
@@ -60,7 +72,7 @@ struct form *kept_solution(struct collector *c, const struct node *node, const s
 		zero = zero && e->f[i]->terms == 0;
 	if (zero)
 		return NEW(struct form);
-	if (all_constant(cells, e->M))
+	if (all_constant(cells, e->M) && !has_multipliers(c, e))
 		return constant_solution(c, node, e, component);
 	if (n == 1)
 		return kept_product(c, node, e->f[0], kept_reciprocal(c, node, e->M[0]));

@@ -578,9 +578,6 @@ static void keep(void *context)
 	struct building *b = context;
 	refuse(CAN_CONSTRAINTS, b->model, rows_of(b)->constraint[0].statement->at);
 	check_inputs(b);
-	if (!b->full)
-		error(rows_of(b)->constraint[0].statement->at, "let the one coordinate be a multiple of the other",
-		      "constraints of equations that are linear are not built");
 	build_corrections(b);
 	if (!b->request->again.tunable)
 		meet_constraints(b);

@@ -106,8 +106,8 @@ bool leaves_over(const struct building *b)
 	const struct demands demands = demands_of(b);
 	if (b->request->solution)
 		return false;
-	if (!b->model->request.at.scheme.source)
-		return !demands.piecewise;
+	if (!b->model->request.at.scheme.source || b->spec->count.multipliers > 0)
+		return !demands.piecewise || b->spec->count.multipliers > 0;
 	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
 	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->operators.given);
 }
@@ -256,7 +256,8 @@ static void find_obstacle(void *context)
 	for (int s = 0; b->nominal && s < b->nominals; s++)
 		add_elements(b, &b->nominal[s]);
 	const struct atom *atom = first_atom(b, false);
-	const char *why = "is not piecewise linear", *rewrite;
+	const bool held = atom && is_constant_system(atom);
+	const char *why = held ? "is a constraint" : "is not piecewise linear", *rewrite;
 	model->nonlinear.obstacle = atom ? atom->node : NULL;
 	for (int s = 1; s < model->system.segments && !model->nonlinear.obstacle; s++) {
 		model->nonlinear.obstacle = changing_factor(b, s);
@@ -362,7 +363,7 @@ static bool choose_scheme(struct building *b)
 			statement_guard(part_loads, b);
 		return !diagnostics_errors();
 	}
-	if (model->scheme == SCHEME_EXACT && first_atom(b, true))
+	if (model->scheme == SCHEME_EXACT && first_atom(b, true) && !constrained)
 		return statement_guard(report_atom, b);
 	if (model->scheme == SCHEME_EXACT)
 		return check_changes(b);

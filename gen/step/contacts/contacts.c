@@ -392,16 +392,22 @@ static void assign(struct constraints *all, const struct jump *jump, int jumps)
 	}
 }
 
-/* v - (1 + e) d s, d what is watched; e = 0 where it comes to rest */
-static int velocity_behind(struct sequencing *w, const struct impact_law *law, int state, int d, bool still)
+/* v - (1 + e) d s, d what is watched, or a number; e = 0 where it comes to rest */
+static int velocity_behind(struct sequencing *w, const struct impact_law *law, int state, int d, double number,
+			   bool still)
 {
 	const int speed = sequence_of_form(w, law->speed);
-	RATIONAL one = RATIO(1, 1), factor = RATIO(-1, 1);
+	RATIONAL one = RATIO(1, 1), factor = RATIO(-1, 1), part = ZERO;
 	struct sum sum = { 0 };
 	if (!still)
 		mpq_sub(factor, factor, law->restitution);
 	sum_add(&sum, TERM_SEQUENCE, state, 0, one);
-	sum_add(&sum, TERM_PRODUCT, speed < d ? speed : d, speed < d ? d : speed, factor);
+	mpq_set_d(part, number);
+	mpq_mul(part, part, factor);
+	if (d == NONE)
+		sum_add(&sum, TERM_SEQUENCE, speed, 0, part);
+	else
+		sum_add(&sum, TERM_PRODUCT, speed < d ? speed : d, speed < d ? d : speed, factor);
 	return sum_sequence(w, &sum);
 }
 
@@ -413,10 +419,11 @@ static void assign_moving(struct constraints *all, int index, int hold, bool sti
 	/* Where it alone moves the guard it is 0 at rest, exactly. */
 	const int only = law->moving->only < 0 ? NONE : w->system->velocity[law->moving->only];
 	for (int i = 0; i < w->system->states; i++) {
-		const int back = c->hold[hold].back_watch[i];
-		if (back == NONE)
+		const int back = c->hold[hold].back_watch[i], d = back == NONE ? NONE : c->watch[back].sequence;
+		const double number = c->hold[hold].back[i];
+		if (back == NONE && number == 0)
 			continue;
-		int d = c->watch[back].sequence, value = velocity_behind(w, law, i, d, still);
+		int value = velocity_behind(w, law, i, d, number, still);
 		value = watch(w, still && i == only ? all->none : value, false);
 		*MORE(c->assignment, c->assignments) = (struct series_jump){ i, value };
 	}
@@ -439,7 +446,7 @@ static void watch_moving_bounce(struct constraints *all, int index)
 	for (int j = 0; j < w->system->n; j++)
 		if (w->system->velocity[j] >= 0)
 			impact->back_watch[j] = c->hold[impact->hold].back_watch[w->system->velocity[j]];
-	for (int j = 0; j < w->system->n && c->columns > 0; j++)
+	for (int j = 0; j < w->system->n; j++)
 		if (w->system->velocity[j] >= 0)
 			impact->back[j] = c->hold[impact->hold].back[w->system->velocity[j]];
 	impact->jump = c->assignments;
