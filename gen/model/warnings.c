@@ -474,6 +474,36 @@ static void check_guards(struct building *b)
 			}
 }
 
+struct passed { struct building *b; struct point *start; const struct impact *impact; };
+
+static void check_start(void *context)
+{
+	const struct passed *p = context;
+	const struct form *guard = form_at(p->start, p->impact->in->guard);
+	RATIONAL by = ZERO;
+	if (is_constant(guard))
+		constant_value(&p->b->collector, guard, by);
+	if (nearest_double(by) > 0x1p-40)
+		say_warning(p->impact->when->at,
+			    "it acts once that has ended: what stands first comes up to the second",
+			    "this stop is passed by %s at the start", shortest(nearest_double(by)));
+}
+
+static void check_starts(struct building *b)
+{
+	struct jacobian j = { .b = b, .state = b->model->initial };
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
+	mpq_init(j.t);
+	struct passed passed = { b, point_new(&b->collector, jacobian_point(&j, fixing), fixing), NULL };
+	point_at_values(passed.start);
+	for (int i = 0; i < b->model->contacts.impacts; i++) {
+		passed.impact = &b->model->contacts.impact[i];
+		if (passed.impact->when->restitution)
+			silent_guard(check_start, &passed);
+	}
+	mpq_clear(j.t);
+}
+
 /* Other phases go on. */
 static void check_phases(const struct model *model)
 {
@@ -504,6 +534,7 @@ void warn(struct building *b)
 	check_smoothness(b);
 	check_friction(model);
 	check_guards(b);
+	check_starts(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	/* in normal modes a step's spectral radius tells more */
 	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||
