@@ -244,6 +244,9 @@ static void check_energy(struct building *b, const struct energy *energy, const 
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct basis *basis = &(*term)->basis;
 		const bool input = basis->kind == BASIS_INPUT && differentiated;
+		if (basis->kind == BASIS_COORD && basis->index >= b->model->n)
+			error(energy->value->start, "'force EXPR on q' takes it", "no energy has the multiplier '%s'",
+			      b->model->names.coord[basis->index]);
 		if ((basis->kind == BASIS_COORD && basis->order == 2) || input)
 			error(energy->value->start, input ? "a load of time, or a coordinate, moves it" : NULL,
 			      "the %s reads %s, of which a derivative would be needed",

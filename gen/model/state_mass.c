@@ -76,11 +76,27 @@ struct starting {
 
 /* ---- M and f ---- */
 
-static _Noreturn void report_not_linear(const struct atom *atom)
+/* The name of a multiplier that stands there; NULL: none does */
+static const char *multiplier_within(const struct solving *w, const struct atom *atom)
 {
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->b->collector.atoms));
+	const struct form *form = form_unit((struct basis){ .kind = BASIS_ATOM, .index = atom->index, .atom = atom });
+	const char *name = NULL;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_COORD && (*term)->basis.index >= w->coords)
+			name = w->b->model->names.coord[(*term)->basis.index];
+	return name;
+}
+
+static _Noreturn void report_not_linear(const struct solving *w, const struct atom *atom)
+{
+	const char *text = text_between(atom->node->start, atom->node->end), *name = multiplier_within(w, atom);
+	if (name)
+		error(atom->node->start, "a force takes it times what is no multiplier; 'friction' takes its size",
+		      "'%s' is not linear in the multiplier '%s', which is solved for with accelerations", text, name);
 	error(atom->node->start,
 	      "equations are solved for them by elimination: they stand in sums, and times other factors",
-	      "'%s' is not linear in highest derivatives", text_between(atom->node->start, atom->node->end));
+	      "'%s' is not linear in highest derivatives", text);
 }
 
 static bool holds_highest(const struct solving *w, const struct form *form)
@@ -114,7 +130,7 @@ static void check_linear(const struct solving *w, const struct form *form)
 			held += holds * (a->kind == ATOM_PRODUCT ? (int)a->exponent[k] : 1);
 			if (holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
 				      (!chooses && held > 1)))
-				report_not_linear(a);
+				report_not_linear(w, a);
 			check_linear(w, a->operand[k]);
 		}
 	}
