@@ -174,8 +174,9 @@ struct truth {                      /* at each end of a unit and at TRUTH_BETWEE
 };
 #define TRUTH_BETWEEN 0.375
 struct truth *truth_of(struct problem *problem);                    /* and gives the problem its scales */
-/* The same in parts, of what a program knows in closed form: room for it; scales, once its ends of units are there */
+/* In parts: room for it; of a linear problem e^{A t} and its loads; scales, once its ends of units are there */
 struct truth *truth_new(const struct problem *problem);
+void truth_of_linear(const struct problem *problem, struct truth *truth);
 void truth_scales(struct problem *problem, struct truth *truth);
 /* The largest of `most` and how far y is from the truth at the end of unit k; what is not a number stays */
 double truth_farther(double most, const struct truth *truth, int k, const double *y);

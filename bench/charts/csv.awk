@@ -48,6 +48,10 @@ function nearest(list, x,    n, i, item, at, d, least) {
 	return at
 }
 function quoted(text) { return text ~ /[,"]/ ? "\"" text "\"" : text }
+# Of as many fields as its table has columns
+function put_row(field,    i) {
+	for (i = 1; i <= columns; i++) printf "%s%s", quoted(field[i]), i < columns ? "," : "\n"
+}
 function escaped(text) { gsub(/&/, "\\&amp;", text); gsub(/</, "\\&lt;", text); gsub(/>/, "\\&gt;", text); return text }
 # A row of letters as runs, 12c for twelve c, and back
 function runs(text,    i, n, line) {

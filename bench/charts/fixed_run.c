@@ -79,8 +79,7 @@ static void allot_part(struct fixed *f, struct part *p, double **next, int *rows
 	const size_t n = (size_t)f->n, m = (size_t)scheme_of(f)->unknowns * n;
 	struct factors *each[] = {&p->first, &p->second};
 	for (int i = 0; i < 2; i++)
-		*each[i] = (struct factors){.size = (int)m, .matrix = take(next, m * m), .reciprocal = take(next, m),
-		                            .row = rows + i * (int)m};
+		*each[i] = (struct factors){.size = (int)m, .matrix = take(next, m * m), .row = rows + i * (int)m};
 	p->to_velocity = take(next, n * n);
 	p->to_place = take(next, n * n);
 	p->loads = take(next, n * n);
@@ -91,7 +90,7 @@ static void allot_part(struct fixed *f, struct part *p, double **next, int *rows
 static bool allot(struct fixed *f)
 {
 	const size_t n = (size_t)f->n, m = (size_t)scheme_of(f)->unknowns * n;
-	double *next = f->memory = calloc((3 + 3 + 2 * WORK + 2) * n + 4 * (m * m + m) + 8 * n * n, sizeof *next);
+	double *next = f->memory = calloc((3 + 3 + 2 * WORK + 2) * n + 4 * m * m + 8 * n * n, sizeof *next);
 	f->rows = calloc(4 * m + 1, sizeof *f->rows);
 	if (!f->memory || !f->rows)
 		return false;

@@ -15,7 +15,7 @@
  * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared
  * object of variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the
  * equations. Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no
- * error. What is true: closed forms in quadruple precision, below; for van der Pol truth_of.
+ * error. What is true: e^{A t} in quadruple precision (truth.c), or the closed forms below; for van der Pol truth_of.
  *
  * hard --scales [--quick] VARIANTS: the scales of each case, as precision --scales has them. */
 #include <gsl/gsl_errno.h>
@@ -30,90 +30,23 @@
 typedef __float128 quad;
 enum { MOST_STATES = 4 };
 
-/* ---- what is true: q, then their velocities; `off`: by how much a case is off the one that it is near to ---- */
+/* ---- what is true: q, then their velocities ---- */
 
-static void add_wave(quad *y, int n, const quad *shape, quad w, quad t)
+/* x1'' + u^2 x1 = 0, x2'' + w^2 x2 = x1, w = u + 1e-10, whose square no double of the equations has: x2 is 0.01 (cos ut -
+ * cos wt)/(w^2 - u^2) */
+static void poles_apart(quad t, quad *y)
 {
-	for (int i = 0; i < n; i++) {
-		y[i] += shape[i] * cosq(w * t);
-		y[n + i] -= w * shape[i] * sinq(w * t);
-	}
-}
-
-/* From rest at a: x'' + (1 + S) x1 - S x2 = 0, x2'' + S (x2 - x1) = 0, S = 1e8; the slow root as product over fast
- * root */
-static void stiff_spring(quad off, quad t, quad *y)
-{
-	(void)off;
-	const quad S = 1e8Q, fast = (1 + 2 * S + sqrtq(1 + 4 * S * S)) / 2, slow = S / fast;
-	const quad roots[] = { slow, fast };
-	for (int k = 0; k < 2; k++) {
-		const quad u1 = S, u2 = 1 + S - roots[k], part = (u1 + u2) / (u1 * u1 + u2 * u2);
-		add_wave(y, 2, (quad[]){ part * u1, part * u2 }, sqrtq(roots[k]), t);
-	}
-}
-
-/* x'' + w^2 x = cos(u t) from rest: (cos ut - cos wt)/(w^2 - u^2), and its limit t sin(wt)/(2w) */
-static void driven(quad w, quad u, quad t, quad *x, quad *v)
-{
-	const quad sum = (u + w) / 2, half = (w - u) / 2, s = half == 0 ? t / 2 : sinq(half * t) / (2 * half);
-	*x = s * sinq(sum * t) / sum;
-	*v = (half == 0 ? 0.5Q : cosq(half * t) / 2) * sinq(sum * t) / sum + s * cosq(sum * t);
-}
-
-static void resonance(quad off, quad t, quad *y)
-{
-	driven(10, 10 + off, t, y, y + 1);
-}
-
-static void confluent(quad off, quad t, quad *y)
-{
-	driven(10 + off, 10, t, y + 1, y + 3);
-	y[0] = 0.01Q * cosq(10 * t);
-	y[1] *= 0.01Q;
-	y[2] = -0.1Q * sinq(10 * t);
-	y[3] *= 0.01Q;
-}
-
-static void critical(quad off, quad t, quad *y)
-{
-	(void)off;
-	y[0] = (1 + 10 * t) * expq(-10 * t);
-	y[1] = -100 * t * expq(-10 * t);
-}
-
-/* Masses 1 and 2, spring 100, force 1 on the first: their centre, and the stretch r = x1 - x2, r'' + 150 r = 1 */
-static void rigid(quad off, quad t, quad *y)
-{
-	(void)off;
-	const quad W = sqrtq(150), r = (1 - cosq(W * t)) / 150, u = sinq(W * t) / W, x = t * t / 6, v = t / 3;
-	y[0] = x + 2 * r / 3;
-	y[1] = x - r / 3;
-	y[2] = v + 2 * u / 3;
-	y[3] = v - u / 3;
-}
-
-static void long_run(quad off, quad t, quad *y)
-{
-	(void)off;
-	add_wave(y, 2, (quad[]){ 0.005Q, 0.005Q }, 10, t);
-	add_wave(y, 2, (quad[]){ 0.005Q, -0.005Q }, sqrtq(300), t);
-}
-
-/* Poles a = -1e8 and b = -1e-3, x(0) = 1 */
-static void fast_slow(quad off, quad t, quad *y)
-{
-	(void)off;
-	const quad a = -1e8Q, b = -1e-3Q;
-	y[0] = (a * expq(b * t) - b * expq(a * t)) / (a - b);
-	y[1] = a * b * (expq(b * t) - expq(a * t)) / (a - b);
+	const quad u = 10, w = 10 + 1e-10Q, sum = (u + w) / 2, half = (w - u) / 2, s = sinq(half * t) / (2 * half);
+	y[0] = 0.01Q * cosq(u * t);
+	y[1] = 0.01Q * (s * sinq(sum * t) / sum);
+	y[2] = -0.1Q * sinq(u * t);
+	y[3] = 0.01Q * (cosq(half * t) / 2 * sinq(sum * t) / sum + s * cosq(sum * t));
 }
 
 /* x'' + x = 0 up to the stop at b = 1 - 1e-6, reached with speed v; inside, e = x - b: e'' + (1 + K) e + b = 0. A
  * period is from -1 to -1, symmetric about the deepest point, where tan(W t) = v W / b. */
-static void graze(quad off, quad t, quad *y)
+static void graze(quad t, quad *y)
 {
-	(void)off;
 	const quad b = 1 - 1e-6Q, W = sqrtq(1 + 1e8Q), v = sqrtq((1 - b) * (1 + b));
 	const quad reach = acosq(-b), touch = atanq(v * W / b) / W, period = 2 * (reach + touch);
 	quad s = t - floorq(t / period) * period;
@@ -140,26 +73,25 @@ static const struct hard_case {
 	int units, quick_units;
 	double frequency;                       /* of its load */
 	bool linear;
-	/* NULL: truth_of models/vanderpol_stiff.spec; y comes as zeros */
-	void (*exact)(quad off, quad t, quad *y);
-	quad off;
+	/* NULL: e^{A t}; where it is not linear truth_of models/vanderpol_stiff.spec */
+	void (*exact)(quad t, quad *y);
 	/* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls between them */
 	double least_v;
 	double steps[3];                        /* to take, 0 at the end */
 	long most_evaluations;
 } cases[] = {
-	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 0, 133, { 0.1, 0.01 }, 5000000 },
-	{ "stiff spring", 0.125, 800, 80, 0, true, stiff_spring, 0, 0, { 0.125, 1.0 / 128 }, 20000000 },
-	{ "resonance", 0.125, 8000, 800, 10, true, resonance, 0, 0, { 1.0 / 128 }, 5000000 },
-	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, resonance, 1e-9Q, 0, { 1.0 / 128 }, 5000000 },
-	{ "equal poles", 0.125, 8000, 800, 0, true, confluent, 0, 0, { 1.0 / 128 }, 5000000 },
-	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, confluent, 1e-10Q, 0, { 1.0 / 128 }, 5000000 },
-	{ "critical damping", 0.125, 80, 80, 0, true, critical, 0, 0, { 1.0 / 128 }, 5000000 },
-	{ "rigid body", 0.125, 8000, 800, 0, true, rigid, 0, 0, { 1.0 / 128 }, 5000000 },
-	{ "long run", 1, 9766, 98, 0, true, long_run, 0, 0, { 1.0 / 1024 }, 200000000 },
-	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, 0, { 1.0 / 128 }, 5000000 },
-	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, fast_slow, 0, 1e-3, { 1024 }, 5000000 },
-	{ "the same, long step", 1048576, 8, 8, 0, true, fast_slow, 0, 1e-3, { 1048576 }, 5000000 },
+	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 133, { 0.1, 0.01 }, 5000000 },
+	{ "stiff spring", 0.125, 800, 80, 0, true, NULL, 0, { 0.125, 1.0 / 128 }, 20000000 },
+	{ "resonance", 0.125, 8000, 800, 10, true, NULL, 0, { 1.0 / 128 }, 5000000 },
+	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, NULL, 0, { 1.0 / 128 }, 5000000 },
+	{ "equal poles", 0.125, 8000, 800, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
+	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, poles_apart, 0, { 1.0 / 128 }, 5000000 },
+	{ "critical damping", 0.125, 80, 80, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
+	{ "rigid body", 0.125, 8000, 800, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
+	{ "long run", 1, 9766, 98, 0, true, NULL, 0, { 1.0 / 1024 }, 200000000 },
+	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, { 1.0 / 128 }, 5000000 },
+	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, NULL, 1e-3, { 1024 }, 5000000 },
+	{ "the same, long step", 1048576, 8, 8, 0, true, NULL, 1e-3, { 1048576 }, 5000000 },
 };
 static const double tolerance = 1e-10;          /* of adaptive methods */
 
@@ -174,14 +106,16 @@ static const struct hard_case *case_find(const char *name)
 /* What is true at the ends of units; and the problem's scales, which are the history's */
 static struct truth *history_of(const struct hard_case *c, struct problem *p)
 {
-	struct truth *t = c->exact ? truth_new(p) : truth_of(p);
+	struct truth *t = c->linear || c->exact ? truth_new(p) : truth_of(p);
 	for (int k = 0; k < t->units && c->exact; k++) {
-		quad y[MOST_STATES] = { 0 };
-		c->exact(c->off, (k + 1) * (quad)c->unit, y);
+		quad y[MOST_STATES];
+		c->exact((k + 1) * (quad)c->unit, y);
 		for (int i = 0; i < 2 * p->n; i++)
 			t->at_end[k * 2 * p->n + i] = (double)y[i];
 	}
-	if (c->exact)
+	if (c->linear && !c->exact)
+		truth_of_linear(p, t);
+	if (c->linear || c->exact)
 		truth_scales(p, t);
 	else
 		say_progress("hard: %s: two roads to what is true agree to %.2g", c->name, t->agreement);
@@ -304,8 +238,8 @@ static void try_ours(FILE *out, const struct hard_case *c, const struct problem 
 
 static struct problem *problem_of(const struct hard_case *c, const char *file, bool quick)
 {
-	return problem_load(file, c->exact ? c->name : "vanderpol_stiff", c->unit, quick ? c->quick_units : c->units,
-	                    c->linear, c->frequency);
+	return problem_load(file, c->linear || c->exact ? c->name : "vanderpol_stiff", c->unit,
+	                    quick ? c->quick_units : c->units, c->linear, c->frequency);
 }
 
 int main(int argc, char **argv)

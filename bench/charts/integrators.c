@@ -6,7 +6,9 @@
  * decay over h/T (integrators.csv); their orders from rest under a smooth load, under one that sets in at once, and
  * from a displaced start (integrators_orders.csv); and what their authors and others state of them beside what is
  * measured (integrators_check.csv), where each eigenvalue is found twice: from one step asked at every state, and from
- * the positions of a long run. Exit status 1 where one is off.
+ * the positions of a long run. Period elongation and amplitude decay of other methods too, as the textbooks draw them
+ * (Bathe, Finite Element Procedures, figure 9.3; Hughes, The Finite Element Method, section 9.3): quality.csv,
+ * quality_check.csv. Exit status 1 where one is off.
  */
 #include "amplification.h"
 
@@ -24,25 +26,29 @@ static const struct method *need(const char *name)
 
 /* ---- one oscillator ---- */
 
-struct quality { double rho, elongation, decay; };      /* the last two in percent, of a period; NAN: no oscillation */
+/* l = e^{(-xi + i) phi}, the eigenvalue that stands for the oscillation: the period seen is 2 pi h/phi, the amplitude
+ * falls by 1 - e^{-2 pi xi} in each of them, and xi is the algorithmic damping ratio. NAN: no oscillation */
+struct quality { double rho, elongation, decay, damping; };
 
 static struct quality quality_of(double rho, double complex l, double wh)
 {
-	struct quality q = {rho, NAN, NAN};
-	if (cimag(l) > 0) {
-		q.elongation = 100 * (wh / carg(l) - 1);
-		q.decay = -100 * expm1(2 * M_PI * log(cabs(l)) / carg(l));
-	}
-	return q;
+	const double phi = carg(l), xi = -log(cabs(l)) / phi;
+	if (!(cimag(l) > 0))
+		return (struct quality){rho, NAN, NAN, NAN};
+	return (struct quality){rho, wh / phi - 1 + 0.0, 0.0 - expm1(-2 * M_PI * xi), xi + 0.0};
+}
+
+static struct quality asked_of_subject(const struct subject *s, double wh)
+{
+	double complex eigenvalue[MOST_EIGENVALUES];
+	const int count = oscillator_eigenvalues(s, wh, eigenvalue);
+	return quality_of(largest(count, eigenvalue), oscillation(count, eigenvalue, wh), wh);
 }
 
 /* NULL: exact, by hand */
 static struct quality asked(const struct method *method, double wh)
 {
-	const struct subject s = {.method = method, .scheme = "flow"};
-	double complex eigenvalue[MOST_EIGENVALUES];
-	const int count = oscillator_eigenvalues(&s, wh, eigenvalue);
-	return quality_of(largest(count, eigenvalue), oscillation(count, eigenvalue, wh), wh);
+	return asked_of_subject(&(struct subject){.method = method, .scheme = "flow"}, wh);
 }
 
 /* The other road: once what else there is has died away, positions keep x+ = s x - p x-, whose roots are the pair. The
@@ -92,8 +98,8 @@ static void chart(const char *folder, int points)
 			const struct quality q = asked(method, 2 * M_PI * share);
 			fprintf(csv, "%s,%.6g", names[k], share);
 			put(csv, q.rho);
-			put(csv, share <= 0.4 ? q.elongation : NAN);
-			put(csv, share <= 0.4 ? q.decay : NAN);
+			put(csv, share <= 0.4 ? 100 * q.elongation : NAN);
+			put(csv, share <= 0.4 ? 100 * q.decay : NAN);
 			putc('\n', csv);
 		}
 	}
@@ -226,10 +232,10 @@ static void check_known(struct checks *c, const struct known *k)
 		      "%s: spectral radius at w h = %.4g", k->name, wh[i]);
 	for (int i = 0; i < 2; i++)
 		if (!isnan(k->elongation[i]))
-			check(c, k->elongation[i], asked(m, 2 * M_PI * (i ? 0.05 : 0.1)).elongation,
+			check(c, k->elongation[i], 100 * asked(m, 2 * M_PI * (i ? 0.05 : 0.1)).elongation,
 			      digits(k->elongation[i], 1e-4), "%s: period elongation [%%] at h/T = %g", k->name,
 			      i ? 0.05 : 0.1);
-	check(c, k->decay, asked(m, 2 * M_PI * 0.1).decay, digits(k->decay, k->decay > 10 ? 1e-2 : 1e-4),
+	check(c, k->decay, 100 * asked(m, 2 * M_PI * 0.1).decay, digits(k->decay, k->decay > 10 ? 1e-2 : 1e-4),
 	      "%s: amplitude decay [%%] in a period at h/T = 0.1", k->name);
 	if (!isnan(k->x[0])) {
 		double x[2];
@@ -247,11 +253,79 @@ static void check_roads(struct checks *c, const char *name)
 	for (int i = 0; i < 2; i++) {
 		const double wh = i ? 0.9 : 0.3;
 		const struct quality one = asked(m, wh), two = run_long(m, wh);
-		check(c, one.elongation, two.elongation, 1e-7,
+		check(c, 100 * one.elongation, 100 * two.elongation, 1e-7,
 		      "%s: period elongation [%%] at w h = %g, by a step's eigenvalues and by a run of 400", name, wh);
-		check(c, one.decay < 1e-9 ? 0 : one.decay, two.decay, 1e-7,
+		check(c, one.decay < 1e-11 ? 0 : 100 * one.decay, 100 * two.decay, 1e-7,
 		      "%s: amplitude decay [%%] at w h = %g, by a step's eigenvalues and by a run of 400", name, wh);
 	}
+}
+
+/* ---- the quality of other methods ---- */
+
+/* Sizes for a log axis; 0 what rounding makes */
+static double seen(double x)
+{
+	return fabs(x) < 1e-13 ? 0 : fabs(x);
+}
+
+static void chart_quality(FILE *csv, int points)
+{
+	struct subject s;
+	for (int k = 0; subject_at(k, &s); k++) {
+		for (int i = 0; i < points; i++) {
+			const double share = 0.005 * pow(100, (double)i / (points - 1));
+			const struct quality q = asked_of_subject(&s, 2 * M_PI * share);
+			if (!isnan(q.damping))
+				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation,
+					100 * q.decay, q.damping, 100 * seen(q.elongation), 100 * seen(q.decay));
+			else
+				fprintf(csv, "%s,%.6g,none,none,none,none,none\n", s.name, share);
+		}
+	}
+}
+
+/* What the literature has for small steps: the first power of w h with its factor */
+static void check_small(struct checks *c, const char *name, double wh, double elongation, double damping,
+                        double tolerance)
+{
+	const struct subject s = subject_named(name, 0);
+	const struct quality q = asked_of_subject(&s, wh);
+	check(c, elongation, q.elongation, elongation == 0 ? 1e-13 : tolerance,
+	      "%s: period elongation at w h = %g, first term for small steps", name, wh);
+	check(c, damping, q.damping, damping == 0 ? 1e-13 : tolerance,
+	      "%s: algorithmic damping ratio at w h = %g, first term", name, wh);
+}
+
+static void check_damping(struct checks *c, const char *name, double wh, double damping)
+{
+	const struct subject s = subject_named(name, 0);
+	check(c, damping, asked_of_subject(&s, wh).damping, 1e-2, "%s: algorithmic damping ratio at w h = %g, first term",
+	      name, wh);
+}
+
+/* The methods of all fields, without damping */
+static int quality(const char *folder, int points)
+{
+	struct checks c;
+	FILE *csv = table_open(folder, "quality.csv",
+	                       "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,"
+	                       "algorithmic_damping_ratio,elongation_size,decay_size");
+	say_progress("quality: period elongation and amplitude decay");
+	chart_quality(csv, points);
+	table_close(csv, "quality.csv");
+	checks_open(&c, folder, "quality_check.csv");
+	const double wh = 0.05, q = wh * wh;
+	check_small(&c, "explicit Euler", wh, q / 3, -wh / 2, 1e-2);
+	check_small(&c, "explicit trapezoid", wh, -q / 6, -q * wh / 8, 1e-2);
+	check_small(&c, "RK4", wh, q * q / 120, q * q * wh / 144, 1e-2);
+	check_small(&c, "central difference", wh, -q / 24, 0, 1e-2);
+	check_small(&c, "implicit trapezoid", wh, q / 12, 0, 1e-2);
+	check_small(&c, "Newmark", wh, q / 12, 0, 1e-2);
+	check_small(&c, "exact", wh, 0, 0, 0);
+	/* Damping ratio (h/4)(wA^2 - w^2)/w: wA^2/w^2 - 1 is 0.1 and -0.1/1.2 */
+	check_damping(&c, "pl 0.1 in phase", wh, 0.1 * wh / 4);
+	check_damping(&c, "pl 0.1 out of phase", wh, -0.1 / 1.2 * wh / 4);
+	return checks_close(&c);
 }
 
 int main(int argc, char **argv)
@@ -267,5 +341,5 @@ int main(int argc, char **argv)
 		if (strcmp(known[i].name, "KR-alpha 1") != 0 && strcmp(known[i].name, "KR-alpha 0") != 0)
 			check_roads(&c, known[i].name);
 	}
-	return checks_close(&c);
+	return checks_close(&c) | quality(folder, quick ? 25 : 41);
 }

@@ -2,14 +2,14 @@
 /* Balanced truncation: of all states those that the load moves much and the output sees much. Moore, IEEE Transactions
  * on Automatic Control 26 (1981) 17; by the square roots of both Gramians: Laub, Heath, Paige, Ward, ibid. 32 (1987)
  * 115. */
+#include "eigen.h"
+#include "factors.h"
 #include "less.h"
 
 #include <gsl/gsl_blas.h>
-#include <gsl/gsl_complex_math.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_linalg.h>
-#include <math.h>
-#include <string.h>
+
+ELIMINATION(complex, double complex, cabs)
 
 /* W = R R^T */
 static void root_of(gsl_matrix *W, gsl_matrix *R)
@@ -80,45 +80,27 @@ static void times_A(const struct modal *m, const double *x, size_t stride, doubl
 	}
 }
 
-/* The reduced matrix's poles and what each gives to the output */
-static void decouple(int r, const double *A, const double *b, const double *c, struct poles *out)
+/* The reduced matrix's poles and what each gives to the output; A is used up */
+static void decouple(int r, double *A, const double *b, const double *c, struct poles *out)
 {
-	const size_t n = (size_t)r;
-	gsl_matrix *copy = gsl_matrix_alloc(n, n);
-	gsl_vector_complex *values = gsl_vector_complex_alloc(n), *right = gsl_vector_complex_alloc(n),
-		*share = gsl_vector_complex_alloc(n);
-	gsl_matrix_complex *V = gsl_matrix_complex_alloc(n, n), *LU = gsl_matrix_complex_alloc(n, n);
-	gsl_permutation *order = gsl_permutation_alloc(n);
-	gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc(n);
-	int sign;
-	memcpy(copy->data, A, n * n * sizeof *A);
-	gsl_eigen_nonsymmv(copy, values, V, work);
-	gsl_matrix_complex_memcpy(LU, V);
-	for (size_t i = 0; i < n; i++)
-		gsl_vector_complex_set(right, i, gsl_complex_rect(b[i], 0));
-	gsl_linalg_complex_LU_decomp(LU, order, &sign);
-	gsl_linalg_complex_LU_solve(LU, order, right, share);
+	double complex p[r], V[r * r], LU[r * r], right[r], share[r];
+	int row[r];
+	eigenvectors(r, A, p, V);
+	memcpy(LU, V, sizeof LU);
+	for (int i = 0; i < r; i++)
+		right[i] = b[i];
+	factor_complex(r, LU, row);
+	solve_complex(r, LU, row, right, share);
 	out->count = 0;
-	for (size_t j = 0; j < n; j++) {
-		const gsl_complex p = gsl_vector_complex_get(values, j), part = gsl_vector_complex_get(share, j);
+	for (int j = 0; j < r; j++) {
 		double complex sum = 0;
-		for (size_t i = 0; i < n; i++) {
-			const gsl_complex v = gsl_matrix_complex_get(V, i, j);
-			sum += c[i] * (GSL_REAL(v) + GSL_IMAG(v) * I);
-		}
-		if (GSL_IMAG(p) < 0)
+		for (int i = 0; i < r; i++)
+			sum += c[i] * V[i * r + j];
+		if (cimag(p[j]) < 0)
 			continue;
-		out->p[out->count] = GSL_REAL(p) + GSL_IMAG(p) * I;
-		out->c[out->count++] = sum * (GSL_REAL(part) + GSL_IMAG(part) * I);
+		out->p[out->count] = p[j];
+		out->c[out->count++] = sum * share[j];
 	}
-	gsl_eigen_nonsymmv_free(work);
-	gsl_permutation_free(order);
-	gsl_matrix_complex_free(LU);
-	gsl_matrix_complex_free(V);
-	gsl_vector_complex_free(share);
-	gsl_vector_complex_free(right);
-	gsl_vector_complex_free(values);
-	gsl_matrix_free(copy);
 }
 
 /* With R R^T and L L^T the Gramians and L^T R = U S V^T, by the columns of R V S^-1/2 and L U S^-1/2 */

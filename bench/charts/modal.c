@@ -8,11 +8,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_complex_math.h>
-#include <gsl/gsl_eigen.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_linalg.h>
 
+#include "eigen.h"
 #include "propagator.h"
 
 enum { ROW = 2 + MOST_LOADS, BLOCK = 2 * ROW };
@@ -29,62 +28,50 @@ struct modes {
 	double *part, part_length;  /* `between`: the same for another length */
 };
 
-/* Eigenvectors of a size x size matrix, which is used up; of real matrices complex ones stand in pairs */
-static bool eigen(int size, double *matrix, gsl_vector_complex *values, gsl_matrix_complex *vectors)
-{
-	gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc((size_t)size);
-	gsl_matrix_view view = gsl_matrix_view_array(matrix, (size_t)size, (size_t)size);
-	bool good = work && gsl_eigen_nonsymmv(&view.matrix, values, vectors, work) == GSL_SUCCESS;
-	gsl_eigen_nonsymmv_free(work);
-	return good;
-}
-
 static void add_block(struct modes *m, int first, int order)
 {
 	m->first[m->blocks] = first;
 	m->order[m->blocks++] = order;
 }
 
-static bool real_shapes(struct propagator *r, gsl_vector_complex *values, gsl_matrix_complex *vectors, double *matrix)
+static bool real_shapes(struct propagator *r, double *matrix)
 {
 	const int n = r->run.problem->n, own = r->own;
 	struct modes *m = r->modes;
+	double complex value[n], vector[n * n];
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++)
 			matrix[i * n + j] = -r->run.problem->A[(n + i) * own + j];
-	if (!eigen(n, matrix, values, vectors))
+	if (!eigenvectors(n, matrix, value, vector))
 		return false;
 	m->blocks = 0;
 	memset(m->shapes, 0, (size_t)(own * own) * sizeof *m->shapes);
 	for (int j = 0; j < n; j++) {
-		if (GSL_IMAG(gsl_vector_complex_get(values, (size_t)j)) != 0.0)
+		if (cimag(value[j]) != 0.0)
 			return false;
 		add_block(m, 2 * j, 2);
 		for (int i = 0; i < n; i++)
-			m->shapes[i * own + 2 * j] = m->shapes[(n + i) * own + 2 * j +
-			                                       1] = GSL_REAL(gsl_matrix_complex_get(vectors, (size_t)i,
-			                                       (size_t)j));
+			m->shapes[i * own + 2 * j] = m->shapes[(n + i) * own + 2 * j + 1] = creal(vector[i * n + j]);
 	}
 	return true;
 }
 
-static bool complex_shapes(struct propagator *r, gsl_vector_complex *values, gsl_matrix_complex *vectors,
-                           double *matrix)
+static bool complex_shapes(struct propagator *r, double *matrix)
 {
 	const int own = r->own;
 	struct modes *m = r->modes;
+	double complex value[own], vector[own * own];
 	memcpy(matrix, r->run.problem->A, (size_t)(own * own) * sizeof *matrix);
-	if (!eigen(own, matrix, values, vectors))
+	if (!eigenvectors(own, matrix, value, vector))
 		return false;
 	m->blocks = 0;
 	for (int j = 0, order; j < own; j += order) {
-		order = GSL_IMAG(gsl_vector_complex_get(values, (size_t)j)) != 0.0 ? 2 : 1;
+		order = cimag(value[j]) != 0.0 ? 2 : 1;
 		add_block(m, j, order);
 		for (int i = 0; i < own; i++) {
-			gsl_complex entry = gsl_matrix_complex_get(vectors, (size_t)i, (size_t)j);
-			m->shapes[i * own + j] = GSL_REAL(entry);
+			m->shapes[i * own + j] = creal(vector[i * own + j]);
 			if (order == 2)
-				m->shapes[i * own + j + 1] = GSL_IMAG(entry);
+				m->shapes[i * own + j + 1] = cimag(vector[i * own + j]);
 		}
 	}
 	return true;
@@ -124,20 +111,9 @@ static double diagonalise(struct propagator *r, double *matrix)
 
 static bool find_shapes(struct propagator *r)
 {
-	const size_t own = (size_t)r->own, n = own / 2;
-	double *matrix = calloc(own * own, sizeof *matrix);
-	gsl_vector_complex *values = gsl_vector_complex_alloc(own), *half = gsl_vector_complex_alloc(n);
-	gsl_matrix_complex *vectors = gsl_matrix_complex_alloc(own, own), *quarter = gsl_matrix_complex_alloc(n, n);
-	bool good = matrix && values && half && vectors && quarter;
-	if (good && !(real_shapes(r, half, quarter, matrix) && invert(r, matrix) && diagonalise(r, matrix) < 1e-11))
-		good = complex_shapes(r, values, vectors, matrix) && invert(r, matrix) &&
-		       isfinite(diagonalise(r, matrix));
-	gsl_vector_complex_free(values);
-	gsl_vector_complex_free(half);
-	gsl_matrix_complex_free(vectors);
-	gsl_matrix_complex_free(quarter);
-	free(matrix);
-	return good;
+	double matrix[r->own * r->own];
+	return (real_shapes(r, matrix) && invert(r, matrix) && diagonalise(r, matrix) < 1e-11) ||
+	       (complex_shapes(r, matrix) && invert(r, matrix) && isfinite(diagonalise(r, matrix)));
 }
 
 static void project(struct propagator *r)

@@ -6,7 +6,7 @@
  * are read from the collocation polynomial. Smooth models have an instance each with right-hand side and Jacobian
  * compiled in; the beams' Jacobian is theirs, that of linear models their matrix, any other by differences.
  *
- * All numbers of the method are computed here, in long double: nodes, A, error weights; eigenvalues and eigenvectors,
+ * All numbers of the method but its nodes are computed here, in long double: A, error weights; eigenvectors,
  * which only steer Newton, by GSL. The chart of any spec (own/kept.h) includes this file for one model, with ONE_MODEL
  * and what an instance is made of. */
 #if defined __GNUC__ && !defined __clang__ && !defined ONE_MODEL
@@ -18,11 +18,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <gsl/gsl_complex.h>
-#include <gsl/gsl_eigen.h>
-#include <gsl/gsl_matrix.h>
-
 #include "adaptive.h"
+#include "eigen.h"
+#include "factors.h"
 
 enum { RADAU_MOST = 7 };
 #ifndef ONE_MODEL
@@ -61,89 +59,18 @@ struct radau {
 	int row[MOST_COORDINATES], complex_row[RADAU_MOST / 2][MOST_COORDINATES];
 };
 
-/* ---- systems of equations: Gauss elimination with partial pivoting; the diagonal keeps reciprocals ---- */
-
-#define ELIMINATION(KIND, number, size_of) \
-INLINE void factor_##KIND(const int n, number *a, int *row) \
-{ \
-	for (int i = 0; i < n; i++) \
-		row[i] = i; \
-	for (int k = 0; k < n; k++) { \
-		int pivot = k; \
-		for (int i = k + 1; i < n; i++) \
-			if (size_of(a[i * n + k]) > size_of(a[pivot * n + k])) \
-				pivot = i; \
-		for (int j = 0; j < n && pivot != k; j++) { \
-			const number entry = a[k * n + j]; \
-			a[k * n + j] = a[pivot * n + j]; \
-			a[pivot * n + j] = entry; \
-		} \
-		const int kept = row[k]; \
-		row[k] = row[pivot]; \
-		row[pivot] = kept; \
-		a[k * n + k] = 1.0 / a[k * n + k]; \
-		for (int i = k + 1; i < n; i++) { \
-			const number multiple = a[i * n + k] *= a[k * n + k]; \
-			for (int j = k + 1; j < n; j++) \
-				a[i * n + j] -= multiple * a[k * n + j]; \
-		} \
-	} \
-} \
-/* x: the right side, then the solution */ \
-INLINE void solve_##KIND(const int n, const number *a, const int *row, number *x) \
-{ \
-	number z[n > 2 ? MOST_COORDINATES : 2]; \
-	_Pragma("GCC unroll 4") for (int i = 0; i < n; i++) { \
-		number sum = x[n == 1 ? 0 : row[i]]; \
-		for (int j = 0; j < i; j++) \
-			sum -= a[i * n + j] * z[j]; \
-		z[i] = sum; \
-	} \
-	_Pragma("GCC unroll 4") for (int i = n - 1; i >= 0; i--) { \
-		number sum = z[i]; \
-		for (int j = i + 1; j < n; j++) \
-			sum -= a[i * n + j] * x[j]; \
-		x[i] = sum * a[i * n + i]; \
-	} \
-}
 #define LARGER_PART(z) (fabs(creal(z)) + fabs(cimag(z)))
-ELIMINATION(real, double, fabs)
 ELIMINATION(complex, double complex, LARGER_PART)
 
 /* ---- the method's numbers ---- */
 
-/* P_s(2 x - 1) - P_{s-1}(2 x - 1), whose zeros are the nodes; 1 is one of them */
-static long double node_function(int s, long double x)
-{
-	const long double z = 2 * x - 1;
-	long double before = 1, now = z;
-	for (int k = 1; k < s; k++) {
-		const long double next = ((2 * k + 1) * z * now - k * before) / (k + 1);
-		before = now;
-		now = next;
-	}
-	return now - before;
-}
-
-static void find_nodes(int s, long double *c)
-{
-	enum { PARTS = 1000 };
-	int found = 0;
-	for (int k = 0; k < PARTS && found < s - 1; k++) {
-		long double low = (k + 0.5L) / PARTS * 0.999L, high = (k + 1.5L) / PARTS * 0.999L;
-		if ((node_function(s, low) > 0) == (node_function(s, high) > 0))
-			continue;
-		for (int turn = 0; turn < 80; turn++) {
-			const long double middle = (low + high) / 2;
-			if ((node_function(s, low) > 0) == (node_function(s, middle) > 0))
-				low = middle;
-			else
-				high = middle;
-		}
-		c[found++] = (low + high) / 2;
-	}
-	c[s - 1] = 1;
-}
+/* The zeros of P_s(2 x - 1) - P_{s-1}(2 x - 1), s = 3, 5, 7 */
+static const long double nodes[3][RADAU_MOST] = {
+	{ 0.155051025721682190199L, 0.644948974278317809839L, 1 },
+	{ 0.0571041961145176821859L, 0.276843013638123827691L, 0.583590432368916820047L, 0.860240135656219447871L, 1 },
+	{ 0.0293164271597848919744L, 0.148078599668484291863L, 0.336984690281154299096L, 0.55867151877155013203L,
+	  0.769233862030054500888L, 0.926945671319741114889L, 1 },
+};
 
 /* The inverse of the Vandermonde matrix c_i^k: coefficients of Lagrange's polynomials */
 static void invert_vandermonde(int s, const long double *c, long double W[][RADAU_MOST])
@@ -167,7 +94,7 @@ static void invert_vandermonde(int s, const long double *c, long double W[][RADA
 static void find_left(struct radau_table *t)
 {
 	const int s = t->s;
-	double complex a[RADAU_MOST * RADAU_MOST], x[MOST_COORDINATES];
+	double complex a[RADAU_MOST * RADAU_MOST], x[RADAU_MOST], unit[RADAU_MOST];
 	int row[RADAU_MOST];
 	for (int i = 0; i < s; i++) {
 		a[i * s] = t->real_right[i];
@@ -179,8 +106,8 @@ static void find_left(struct radau_table *t)
 	factor_complex(s, a, row);
 	for (int i = 0; i < s; i++) {
 		for (int k = 0; k < s; k++)
-			x[k] = k == i;
-		solve_complex(s, a, row, x);
+			unit[k] = k == i;
+		solve_complex(s, a, row, unit, x);
 		t->real_left[i] = creal(x[0]);
 		for (int k = 0; k < s / 2; k++)
 			t->left[k][i] = x[1 + 2 * k];
@@ -189,45 +116,35 @@ static void find_left(struct radau_table *t)
 
 static void find_eigenvectors(struct radau_table *t)
 {
-	const size_t s = (size_t)t->s;
-	gsl_matrix *A = gsl_matrix_alloc(s, s);
-	gsl_vector_complex *value = gsl_vector_complex_alloc(s);
-	gsl_matrix_complex *vector = gsl_matrix_complex_alloc(s, s);
-	gsl_eigen_nonsymmv_workspace *work = gsl_eigen_nonsymmv_alloc(s);
-	for (size_t i = 0; i < s; i++)
-		for (size_t j = 0; j < s; j++)
-			gsl_matrix_set(A, i, j, t->A[i][j]);
-	gsl_eigen_nonsymmv(A, value, vector, work);
+	const int s = t->s;
+	double A[RADAU_MOST * RADAU_MOST];
+	double complex value[RADAU_MOST], vector[RADAU_MOST * RADAU_MOST];
 	int pairs = 0;
-	for (size_t k = 0; k < s; k++) {
-		const gsl_complex z = gsl_vector_complex_get(value, k);
-		if (GSL_IMAG(z) < 0)
+	for (int i = 0; i < s * s; i++)
+		A[i] = t->A[i / s][i % s];
+	eigenvectors(s, A, value, vector);
+	for (int k = 0; k < s; k++) {
+		const bool is_real = fabs(cimag(value[k])) <= 1e-8;
+		if (!is_real && cimag(value[k]) < 0)
 			continue;
-		const bool is_real = !(GSL_IMAG(z) > 1e-8);
-		for (size_t i = 0; i < s; i++) {
-			const gsl_complex x = gsl_matrix_complex_get(vector, i, k);
+		for (int i = 0; i < s; i++)
 			if (is_real)
-				t->real_right[i] = GSL_REAL(x);
+				t->real_right[i] = creal(vector[i * s + k]);
 			else
-				t->right[pairs][i] = GSL_REAL(x) + GSL_IMAG(x) * I;
-		}
+				t->right[pairs][i] = vector[i * s + k];
 		if (is_real)
-			t->real = GSL_REAL(z);
+			t->real = creal(value[k]);
 		else
-			t->pair[pairs++] = GSL_REAL(z) + GSL_IMAG(z) * I;
+			t->pair[pairs++] = value[k];
 	}
-	gsl_eigen_nonsymmv_free(work);
-	gsl_matrix_complex_free(vector);
-	gsl_vector_complex_free(value);
-	gsl_matrix_free(A);
 	find_left(t);
 }
 
 static void make_table(struct radau_table *t, int s)
 {
-	long double c[RADAU_MOST], W[RADAU_MOST][RADAU_MOST], A[RADAU_MOST][RADAU_MOST];
+	const long double *const c = nodes[(s - 3) / 2];
+	long double W[RADAU_MOST][RADAU_MOST], A[RADAU_MOST][RADAU_MOST];
 	t->s = s;
-	find_nodes(s, c);
 	invert_vandermonde(s, c, W);
 	for (int i = 0; i < s; i++) {
 		t->c[i] = (double)c[i];

@@ -53,23 +53,23 @@ INLINE void INSTANCE(residual)(struct radau *d, double h, const double *y, doubl
 INLINE void INSTANCE(solve)(struct radau *d, double r[][EXTENT], const int s)
 {
 	const struct radau_table *table = d->table;
-	double x[EXTENT];
-	double complex z[RADAU_MOST / 2][EXTENT];
+	double right[EXTENT], x[EXTENT];
+	double complex turned[RADAU_MOST / 2][EXTENT], z[RADAU_MOST / 2][EXTENT];
 	EACH {
 		double sum = 0.0;
 		STAGES(i)
 			sum += table->real_left[i] * r[i][m];
-		x[m] = sum;
+		right[m] = sum;
 		for (int k = 0; k < s / 2; k++) {
 			double complex turn = 0.0;
 			STAGES(i)
 				turn += table->left[k][i] * r[i][m];
-			z[k][m] = turn;
+			turned[k][m] = turn;
 		}
 	}
-	solve_real(COORDINATES, d->matrix, d->row, x);
+	solve_real(COORDINATES, d->matrix, d->row, right, x);
 	for (int k = 0; k < s / 2; k++)
-		solve_complex(COORDINATES, d->complex_matrix[k], d->complex_row[k], z[k]);
+		solve_complex(COORDINATES, d->complex_matrix[k], d->complex_row[k], turned[k], z[k]);
 	STAGES(i)
 		EACH {
 			double sum = table->real_right[i] * x[m];
@@ -100,7 +100,7 @@ INLINE double INSTANCE(error)(struct radau *d, double h, const double *y, const 
 {
 	const struct radau_table *table = d->table;
 	const double g = h * table->real;
-	double rq[EXTENT], rv[EXTENT], total = 0.0;
+	double rq[EXTENT], rv[EXTENT], right[EXTENT], total = 0.0;
 	EACH {
 		double sum = 0.0, sum2 = 0.0;
 		STAGES(i) {
@@ -118,9 +118,9 @@ INLINE double INSTANCE(error)(struct radau *d, double h, const double *y, const 
 		double sum = rv[m];
 		for (int j = 0; j < COORDINATES; j++)
 			sum += g * d->Jq[m * COORDINATES + j] * rq[j];
-		error[COORDINATES + m] = sum;
+		right[m] = sum;
 	}
-	solve_real(COORDINATES, d->matrix, d->row, error + COORDINATES);
+	solve_real(COORDINATES, d->matrix, d->row, right, error + COORDINATES);
 	EACH
 		error[m] = rq[m] + g * error[COORDINATES + m];
 	for (int m = 0; m < 2 * COORDINATES; m++) {

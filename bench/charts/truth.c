@@ -101,7 +101,7 @@ static void apply(int n, const quad *E, const quad *x, quad *y)
 	}
 }
 
-static void closed_form(const struct problem *p, struct truth *t)
+void truth_of_linear(const struct problem *p, struct truth *t)
 {
 	static struct flow f;
 	static quad whole[MOST * MOST], part[MOST * MOST];
@@ -400,7 +400,7 @@ static void solve(struct problem *p, struct truth *t)
 	const struct equations *e = equations_of(p);
 	if (p->linear) {
 		t->roads = "closed form in quadruple precision; NAME_rhs by extrapolation in long double";
-		closed_form(p, t);
+		truth_of_linear(p, t);
 		truth_scales(p, t);
 		t->agreement = extrapolation_difference(p, t);
 		return;

@@ -37,14 +37,13 @@ job() {
 		# time integrators of structural dynamics, a frame under a record
 		structural)
 			made frame
-			"$programs/integrators" $quick "$folder"
-			"$programs/frame" "$variants" "$folder" ;;
-		# quality and largest steps too; the status is 1 where a boundary is not the known one
+			"$programs/frame" "$variants" "$folder"
+			"$programs/integrators" $quick "$folder" ;;
+		# largest steps too; the status is 1 where a boundary is not the known one
 		stability)
 			made stability "$variants/stability"
 			bad=0
-			"$programs/quality" $quick "$folder" || bad=1
-			for program in stability operator_map largest_step; do
+			for program in stability largest_step; do
 				"$programs/$program" $quick "$folder" "$variants/stability" || bad=1
 			done
 			return $bad ;;

@@ -85,7 +85,7 @@ result $? "pages: every picture with its text and caption, every table, nothing 
 mkdir again
 for name in quality_check convergence hard_raw; do
     case $name in
-        quality_check) "$build/bench/charts/quality" --quick again >"$log" 2>&1 ;;
+        quality_check) "$build/bench/charts/integrators" --quick again >"$log" 2>&1 ;;
         *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" again >"$log" 2>&1 ;;
     esac
     cmp "$out/$name.csv" "again/$name.csv" >>"$log" 2>&1

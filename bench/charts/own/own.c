@@ -3,8 +3,7 @@
  * own [-q] EVERY UNITS FOLDER
  *
  * Error against time of plgen's steps and of peers on one model, over UNITS outputs EVERY seconds apart:
- * FOLDER/own.csv, and a verdict for each wanted error: FOLDER/verdict.txt. own.sh compiles it for the model;
- * FOLDER/model.so is the model as plgen makes it, FOLDER/list has a line for each further variant: file, name, `step`
+ * FOLDER/own.csv. own.sh compiles it for the model; FOLDER/model.so is the model as plgen makes it, FOLDER/list has a line for each further variant: file, name, `step`
  * or `tolerance`, setting, options. -q: each time taken once, for tests.
  */
 #include "../charts.h"
@@ -298,14 +297,6 @@ static void find_times(struct line *lines, int count, double *rows)
 
 /* ---- what comes out ---- */
 
-static void put_setting(FILE *out, const struct line *line)
-{
-	if (line->tolerance)
-		fprintf(out, "tolerance %.0e", line->setting);
-	else
-		fprintf(out, "step %g s", history.every / line->setting);
-}
-
 static void put_line(FILE *csv, const struct line *line, double agreement)
 {
 	const bool good = strcmp(line->word, "ok") == 0;
@@ -337,59 +328,6 @@ static void write_table(const char *folder, const struct line *lines, int count,
 	for (const struct line *line = lines; line < lines + count; line++)
 		put_line(csv, line, agreement);
 	table_close(csv, "own.csv");
-}
-
-static const struct line *cheapest(const struct line *lines, int count, bool ours, double target)
-{
-	const struct line *best = NULL;
-	for (const struct line *line = lines; line < lines + count; line++)
-		if (!line->peer == ours && strcmp(line->word, "ok") == 0 && line->error <= target &&
-		    (!best || line->ns < best->ns))
-			best = line;
-	return best;
-}
-
-static void put_best(FILE *out, const char *of, const struct line *line)
-{
-	if (!line) {
-		fprintf(out, "%s: none", of);
-		return;
-	}
-	fprintf(out, "%s: %.3g us an output (%s, ", of, line->ns / 1000, line->name);
-	put_setting(out, line);
-	putc(')', out);
-}
-
-/* A line for each wanted error; then the factors alone, for the picture's title */
-static void write_verdict(const char *folder, const struct line *lines, int count, double agreement)
-{
-	static const double targets[] = {1e-3, 1e-6, 1e-9, 1e-12};
-	char title[400] = "";
-	FILE *out = file_in(folder, "verdict.txt", "w");
-	for (int i = 0; i < 4; i++) {
-		const struct line *ours = cheapest(lines, count, true, targets[i]),
-			*peer = cheapest(lines, count, false, targets[i]);
-		char *end = title + strlen(title);
-		const size_t room = sizeof title - strlen(title);
-		const char *mark = i ? ", " : "", *alone = ours ? "plgen only" : peer ? "a peer only" : "none";
-		fprintf(out, "error below %.0e:  ", targets[i]);
-		if (!(targets[i] >= agreement)) {
-			fprintf(out, "not known: two roads to what is true are %.1g apart\n", agreement);
-			snprintf(end, room, "%s%.0e: not known", mark, targets[i]);
-			continue;
-		}
-		put_best(out, "plgen", ours);
-		put_best(out, ";  best peer", peer);
-		if (ours && peer) {
-			fprintf(out, ";  plgen is %.2g times as fast", peer->ns / ours->ns);
-			snprintf(end, room, "%s%.0e: %.2g", mark, targets[i], peer->ns / ours->ns);
-		} else {
-			snprintf(end, room, "%s%.0e: %s", mark, targets[i], alone);
-		}
-		putc('\n', out);
-	}
-	fprintf(out, "title: %s\n", title);
-	table_close(out, "verdict.txt");
 }
 
 int main(int argc, char **argv)
@@ -427,6 +365,5 @@ int main(int argc, char **argv)
 	if (!quick)
 		find_times(lines, count, rows);
 	write_table(folder, lines, count, agreement);
-	write_verdict(folder, lines, count, agreement);
 	return 0;
 }

@@ -142,7 +142,7 @@ wait $variants
 "$work/own" $quick "$(number "$every")" "$units" "$work"
 mkdir -p "$folder"
 mv "$work/own.csv" "$folder/$name.csv"
-mv "$work/verdict.txt" "$folder/$name.txt"
+sh "$charts/table.sh" own_verdict "$folder/$name.csv" >"$folder/$name.txt"
 signal=
 [ "$inputs" = 0 ] || signal='inputs: sin(2π t/40E) + sin(2π t/17E)/2, E the time between outputs, sampled there'
 gnuplot -c "$own/own.gp" "$folder/$name.csv" "$folder" "$name" "$every" "$units" "$folder/$name.txt" "$signal"
