@@ -289,6 +289,16 @@ double boundary_between(growth_function *growth, const void *of, double from, do
 	return stable ? from : to;
 }
 
+double first_end(growth_function *growth, const void *of, double from, double to, double apart, double limit)
+{
+	if (!(growth(of, from) <= limit))
+		return 0;
+	for (double h = from; h < to; h *= apart)
+		if (!(growth(of, h * apart) <= limit))
+			return boundary_between(growth, of, h, h * apart, limit);
+	return INFINITY;
+}
+
 /* ---- what is charted ---- */
 
 int oscillator_eigenvalues(const struct subject *s, double wh, double complex *eigenvalue)

@@ -49,6 +49,9 @@ double complex oscillation(int count, const double complex *eigenvalue, double w
 typedef double growth_function(const void *of, double setting);         /* per step */
 double boundary_between(growth_function *growth, const void *of, double from, double to, double limit);
 
+/* The first of them from a setting up, looked for at settings by a factor `apart`; 0: not even there; infinite: none */
+double first_end(growth_function *growth, const void *of, double from, double to, double apart, double limit);
+
 /* What is charted of x'' + 2 zeta x' + x = 0: a method; or, where that is NULL, by hand `flow`, which is exact, or a
  * scheme whose operator has the frequency `ratio`, without damping */
 struct subject {

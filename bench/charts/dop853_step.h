@@ -6,23 +6,27 @@
 #endif
 
 #define EACH _Pragma("GCC unroll 4") for (int m = 0; m < SIZE; m++)
-#define A(i, j) dop853_a[i][j] * k[j][m]
-#define STAGE(i, SUM) \
-	do { \
-		EACH \
-			x[m] = y[m] + h * (SUM); \
+/* row . k of the stages before one, its zeros left out: they are known when it is unrolled */
+#define SUM_OF_STAGES(sum, row, before) \
+	double sum = (row)[1] * k[1][m]; \
+	_Pragma("GCC unroll 16") for (int j = 2; j < (before); j++) \
+		if ((row)[j] != 0.0) \
+			sum += (row)[j] * k[j][m];
+#define STAGES(from, to) \
+	_Pragma("GCC unroll 16") for (int i = (from); i <= (to); i++) { \
+		EACH { \
+			SUM_OF_STAGES(sum, dop853_a[i], i) \
+			x[m] = y[m] + h * sum; \
+		} \
 		SLOPES(t + dop853_c[i] * h, x, k[i]); \
-	} while (0)
-#define D(j) dop853_d[row][j] * k[j][m]
+	}
 
 /* The interpolant of the step just taken, from y to `next`: three more stages. Their nest of factors: II.6 (6.20) */
 static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const double *y, const double *next,
                                    double (*k)[2 * EXTENT])
 {
 	double x[2 * EXTENT];
-	STAGE(14, A(14, 1) + A(14, 7) + A(14, 8) + A(14, 9) + A(14, 10) + A(14, 11) + A(14, 12) + A(14, 13));
-	STAGE(15, A(15, 1) + A(15, 6) + A(15, 7) + A(15, 8) + A(15, 11) + A(15, 12) + A(15, 13) + A(15, 14));
-	STAGE(16, A(16, 1) + A(16, 6) + A(16, 7) + A(16, 8) + A(16, 9) + A(16, 13) + A(16, 14) + A(16, 15));
+	STAGES(14, 16)
 	d->adaptive.run.asked += 3;
 	EACH {
 		const double across = next[m] - y[m], bend = h * k[1][m] - across;
@@ -32,9 +36,10 @@ static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const d
 		d->dense[3][m] = across - h * k[13][m] - bend;
 	}
 	_Pragma("GCC unroll 4") for (int row = 0; row < DOP853_DENSE; row++)
-		EACH
-			d->dense[4 + row][m] = h * (D(1) + D(6) + D(7) + D(8) + D(9) + D(10) + D(11) + D(12) + D(13) +
-			                            D(14) + D(15) + D(16));
+		EACH {
+			SUM_OF_STAGES(sum, dop853_d[row], DOP853_STAGES + 1)
+			d->dense[4 + row][m] = h * sum;
+		}
 }
 
 /* A step from y, whose slope is k[1], to `next`; returns its weighted error */
@@ -43,30 +48,15 @@ INLINE double INSTANCE(try)(struct dop853 *d, double t, double h, const double *
 {
 	const double tolerance = d->tolerance, *scale = d->adaptive.scale;
 	double x[2 * EXTENT];
-	STAGE(2, A(2, 1));
-	STAGE(3, A(3, 1) + A(3, 2));
-	STAGE(4, A(4, 1) + A(4, 3));
-	STAGE(5, A(5, 1) + A(5, 3) + A(5, 4));
-	STAGE(6, A(6, 1) + A(6, 4) + A(6, 5));
-	STAGE(7, A(7, 1) + A(7, 4) + A(7, 5) + A(7, 6));
-	STAGE(8, A(8, 1) + A(8, 4) + A(8, 5) + A(8, 6) + A(8, 7));
-	STAGE(9, A(9, 1) + A(9, 4) + A(9, 5) + A(9, 6) + A(9, 7) + A(9, 8));
-	STAGE(10, A(10, 1) + A(10, 4) + A(10, 5) + A(10, 6) + A(10, 7) + A(10, 8) + A(10, 9));
-	STAGE(11, A(11, 1) + A(11, 4) + A(11, 5) + A(11, 6) + A(11, 7) + A(11, 8) + A(11, 9) + A(11, 10));
-	STAGE(12, A(12, 1) + A(12, 4) + A(12, 5) + A(12, 6) + A(12, 7) + A(12, 8) + A(12, 9) + A(12, 10) +
-	          A(12, 11));
+	STAGES(2, DOP853_PLAIN)
 	double sum5 = 0.0, sum3 = 0.0;
 	EACH {
-		const double slope = A(13, 1) + A(13, 6) + A(13, 7) + A(13, 8) + A(13, 9) + A(13, 10) +
-		                     A(13, 11) + A(13, 12);
+		SUM_OF_STAGES(slope, dop853_a[13], 13)
 		next[m] = y[m] + h * slope;
 		const double over = 1.0 / (tolerance * (scale[m] + larger(fabs(y[m]), fabs(next[m]))));
 		const double error3 = slope - dop853_error3[1] * k[1][m] - dop853_error3[9] * k[9][m] -
 		                      dop853_error3[12] * k[12][m];
-		double error5 = 0.0;
-		_Pragma("GCC unroll 12") for (int j = 1; j <= DOP853_PLAIN; j++)
-			if (j == 1 || j > 5)
-				error5 += dop853_error5[j] * k[j][m];
+		SUM_OF_STAGES(error5, dop853_error5, DOP853_PLAIN + 1)
 		sum5 += error5 * over * (error5 * over);
 		sum3 += error3 * over * (error3 * over);
 	}
@@ -156,9 +146,8 @@ static bool INSTANCE(walk)(struct adaptive *a, int units, double *rows)
 }
 
 #undef EACH
-#undef A
-#undef STAGE
-#undef D
+#undef SUM_OF_STAGES
+#undef STAGES
 #undef INSTANCE
 #undef COORDINATES
 #undef EXTENT

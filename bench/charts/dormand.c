@@ -10,31 +10,29 @@
 #define DORMAND_SLOPES slope
 #include "dormand_step.h"
 
+#ifndef ONE_MODEL
+enum { MOST_ENTRIES = 64 };
+#endif
+
 struct dormand {
 	struct adaptive adaptive;
 	double tolerance;
 	double t, h;                /* the end of the last step, and the step to try next */
 	double from, last;          /* where the last step began, and its length */
 	double before;              /* size of the error before, for the controller */
-	double *start, *y, *next;   /* of the last step; its end; of the one that is tried */
-	double *k[7];
-	double *spare;              /* the slope that the next step begins with */
+	/* of the last step; its end; of the one that is tried */
+	double start[MOST_ENTRIES], y[MOST_ENTRIES], next[MOST_ENTRIES];
+	double stage[7][MOST_ENTRIES], *k[7];
+	double spare[MOST_ENTRIES]; /* the slope that the next step begins with */
 };
 
 static bool dormand_make(struct adaptive *a)
 {
 	struct dormand *d = (struct dormand *)a;
-	const size_t size = (size_t)a->size;
-	double *next = d->start = calloc(11 * size, sizeof *next);
-	if (!next)
-		return false;
 	d->tolerance = a->run.setting;
-	d->y = next += size;
-	d->next = next += size;
 	for (int i = 0; i < 7; i++)
-		d->k[i] = next += size;
-	d->spare = next + size;
-	return true;
+		d->k[i] = d->stage[i];
+	return a->size <= MOST_ENTRIES;
 }
 
 static bool dormand_begin(struct adaptive *a, double t, const double *y)
@@ -69,14 +67,13 @@ static double dormand_try(struct dormand *d, double h)
  * interpolant */
 static void dormand_accept(struct dormand *d, double h)
 {
-	double *start = d->start;
-	d->start = d->y;
-	d->y = d->next;
-	d->next = start;
+	const size_t bytes = (size_t)d->adaptive.size * sizeof *d->y;
+	memcpy(d->start, d->y, bytes);
+	memcpy(d->y, d->next, bytes);
+	memcpy(d->spare, d->k[6], bytes);
 	d->from = d->t;
 	d->last = h;
 	d->t += h;
-	memcpy(d->spare, d->k[6], (size_t)d->adaptive.size * sizeof *d->spare);
 }
 
 /* Until a step is accepted, of at most `tries`; the controller is IV.2 (2.43c) of volume II, with its constants */
@@ -115,19 +112,7 @@ static bool dormand_reach(struct adaptive *a, double end, double *y)
 	return true;
 }
 
-static void dormand_discard(struct adaptive *a)
-{
-	struct dormand *d = (struct dormand *)a;
-	double *block = d->start;   /* the three states change places */
-	if (d->y && d->y < block)
-		block = d->y;
-	if (d->next && d->next < block)
-		block = d->next;
-	free(block);
-}
-
 const struct solver dormand_solver = {
 	.bytes = sizeof(struct dormand), .make = dormand_make, .begin = dormand_begin, .reach = dormand_reach,
 	.looks_ahead = true,
-	.discard = dormand_discard,
 };

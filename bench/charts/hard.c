@@ -32,8 +32,8 @@ enum { MOST_STATES = 4 };
 
 /* ---- what is true: q, then their velocities ---- */
 
-/* x1'' + u^2 x1 = 0, x2'' + w^2 x2 = x1, w = u + 1e-10, whose square no double of the equations has: x2 is 0.01 (cos ut -
- * cos wt)/(w^2 - u^2) */
+/* x1'' + u^2 x1 = 0, x2'' + w^2 x2 = x1, w = u + 1e-10, whose square no double has:
+ * x2 is 0.01 (cos ut - cos wt)/(w^2 - u^2) */
 static void poles_apart(quad t, quad *y)
 {
 	const quad u = 10, w = 10 + 1e-10Q, sum = (u + w) / 2, half = (w - u) / 2, s = sinq(half * t) / (2 * half);

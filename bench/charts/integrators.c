@@ -299,8 +299,8 @@ static void check_small(struct checks *c, const char *name, double wh, double el
 static void check_damping(struct checks *c, const char *name, double wh, double damping)
 {
 	const struct subject s = subject_named(name, 0);
-	check(c, damping, asked_of_subject(&s, wh).damping, 1e-2, "%s: algorithmic damping ratio at w h = %g, first term",
-	      name, wh);
+	check(c, damping, asked_of_subject(&s, wh).damping, 1e-2,
+	      "%s: algorithmic damping ratio at w h = %g, first term", name, wh);
 }
 
 /* The methods of all fields, without damping */

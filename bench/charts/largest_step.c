@@ -85,28 +85,15 @@ static bool is_weak(const struct free_subject *s, double end)
 
 static void free_entry(FILE *csv, const struct free_subject *s, double fastest, const char *name)
 {
-	const double limit = 1 + NOT_GROWING, apart = pow(10, 1.0 / 40);
-	const char *model = s->motion->problem.name, *criterion = "free motion";
-	double h = 0.01 / fastest;
-	char step[40] = "any", rate[40] = "";
-	bool none = !(growth(s, h) <= limit);
-	for (; !none && h < 100 / fastest; h *= apart) {
-		if (growth(s, h * apart) <= limit)
-			continue;
-		const double end = boundary_between(growth, s, h, h * apart, limit);
-		none = is_weak(s, end);
-		snprintf(step, sizeof step, "%.4g", end);
-		break;
-	}
-	if (none) {
-		snprintf(step, sizeof step, "none");
+	const double limit = 1 + NOT_GROWING,
+		end = first_end(growth, s, 0.01 / fastest, 100 / fastest, pow(10, 1.0 / 40), limit);
+	const char *step = isfinite(end) ? text("%.4g", end) : "any", *rate = "";
+	if (isfinite(end) && (end == 0 || is_weak(s, end))) {
 		const double rho = growth(s, 0.01);
-		if (rho <= limit)
-			snprintf(rate, sizeof rate, "below %g", NOT_GROWING / 0.01);
-		else
-			snprintf(rate, sizeof rate, "%.4g", log(rho) / 0.01);
+		step = "none";
+		rate = rho <= limit ? text("below %g", NOT_GROWING / 0.01) : text("%.4g", log(rho) / 0.01);
 	}
-	entry(csv, model, name, step, rate, criterion);
+	entry(csv, s->motion->problem.name, name, step, rate, "free motion");
 }
 
 static void linear_model(FILE *csv, const struct problem *p)

@@ -245,14 +245,9 @@ do for [form=1:2] {
 		load marked((side == 1 ? 16 : 6), '-v any=1 -v x=h_over_T -v y='.columns[side])
 		eval 'plot '.clauses
 	}
-	eval bare
-	set origin 0,0; set size 1,0.22
-	set key at screen 0.5,0.105 center vertical Left reverse maxrows 3 width 2 samplen 4.5 spacing 1.25 font ',11'
+	eval key_below(0.22, 0.105, 3, 2)
 	load marked(9, '-v any=1 -v x=h_over_T -v y=spectral_radius')
-	set xrange [1000:1001]; set yrange [1e6:1e7]          # nothing of the curves
-	eval 'plot '.clauses
-	eval end
-	eval dressed
+	eval keyed
 }
 
 === less: less.csv
@@ -285,14 +280,9 @@ do for [form=1:2] {
 		load of_scene(scene[side])
 		eval 'plot '.clauses
 	}
-	eval bare
-	set origin 0,0; set size 1,0.2
-	set key at screen 0.5,0.09 center vertical Left reverse maxrows 2 width 2 samplen 4.5 spacing 1.25 font ',11'
+	eval key_below(0.2, 0.09, 2, 2)
 	load of_scene('beam')
-	set xrange [10000:10001]; set yrange [1e6:1e7]          # nothing of the curves
-	eval 'plot '.clauses
-	eval end
-	eval dressed
+	eval keyed
 }
 
 === limits: limits.csv
@@ -479,14 +469,8 @@ do for [which=1:2] {
 				" -v skip='in phase'"))
 			eval 'plot '.clauses
 		}
-		eval bare
-		set origin 0,0; set size 1,0.22
-		set key at screen 0.5,0.125 center vertical Left reverse maxrows 4 width -2 samplen 4.5 spacing 1.25 \
-			font ',11'
+		eval key_below(0.22, 0.125, 4, -2)
 		load marked(9, '-v x=h_over_T -v y=period_elongation_percent -v any=1')
-		set xrange [10:11]; set yrange [1e6:1e7]          # nothing of the curves
-		eval 'plot '.clauses
-		eval end
-		eval dressed
+		eval keyed
 	}
 }

@@ -50,6 +50,10 @@ set logscale xy
 bare = "unset title; unset border; unset xtics; unset ytics; unset xlabel; unset ylabel; unset logscale; unset grid; ".\
 	"unset label; unset arrow; unset xzeroaxis; set lmargin 2; set rmargin 2; set tmargin 0; set bmargin 0"
 dressed = look."; set xtics nomirror; set ytics nomirror"
+# The key below panels, of all that `load` then gives, whose curves lie elsewhere
+key_below(high, y, rows, width) = bare.sprintf("; set origin 0,0; set size 1,%g; set key at screen 0.5,%g center ".\
+	"vertical Left reverse maxrows %d width %d samplen 4.5 spacing 1.25 font ',11'", high, y, rows, width)
+keyed = "set xrange [1e4:1.001e4]; set yrange [1e6:1e7]; eval 'plot '.clauses; eval end; eval dressed"
 
 # What was found, over the whole width; lines of as many letters as the picture holds
 letters(pixels) = substr(pixels, 1, strstrt(pixels, ',') - 1)/(narrow ? 6.7 : 7.7)

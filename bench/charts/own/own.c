@@ -3,8 +3,9 @@
  * own [-q] EVERY UNITS FOLDER
  *
  * Error against time of plgen's steps and of peers on one model, over UNITS outputs EVERY seconds apart:
- * FOLDER/own.csv. own.sh compiles it for the model; FOLDER/model.so is the model as plgen makes it, FOLDER/list has a line for each further variant: file, name, `step`
- * or `tolerance`, setting, options. -q: each time taken once, for tests.
+ * FOLDER/own.csv. own.sh compiles it for the model; FOLDER/model.so is the model as plgen makes it, FOLDER/list has a
+ * line for each further variant: file, name, `step` or `tolerance`, setting, options. -q: each time taken once, for
+ * tests.
  */
 #include "../charts.h"
 #include "own.h"
