@@ -4,7 +4,8 @@
  * rests or slips behind an event is the combination of those at rest in which all agree.
  *
  * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
- * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations.  contacts: impacts, as
+ * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations; RESTING, where there may be
+ * more, which it brings to agree by pivoting.  contacts: impacts, as
  * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events, most.
  * instant: a state and what stands of it, with time [s] after the start of the step, and chain.  The enclosed run of
  * the generator (gen/step/struck.c) goes by it, too, with limits of its own, and names of roots.h. */
@@ -109,6 +110,12 @@ static int interval_before(const contacts *m, const instant *at, int expression)
 /* Whether all of them agree with these intervals of theirs, what is held is not let go, what is not is: 2; 1: it hangs
  * in the balance.  May leave them there, not renewed. */
 static int agrees(const contacts *m, instant *at, const resting *r, int count, const int *interval);
+
+#ifdef RESTING
+/* On which side of where it is held one of those at rest belongs, the others as they are: -1, 0, 1; hangs: in the
+ * balance */
+static int side_of(const contacts *m, const instant *at, const resting *one, int *hangs);
+#endif
 
 /* ---- impacts that follow each other ---- */
 
@@ -435,9 +442,45 @@ static int combine(const resting *r, int count, int number, const int *before, i
     return cost;
 }
 
-/* The combination in which all agree, with fewest changes, then most that is held; -1: there is none.  how: what
+#ifdef RESTING
+/* More than MOST of them, in `interval`, by block pivoting: all that do not agree change over together while that leaves
+ * fewer of them, else the first of them alone, which ends where forces follow from velocities by a P-matrix.  0: they
+ * do not come to agree. */
+static int pivot(const contacts *m, instant *at, const resting *r, int count, int *interval)
+{
+    enum { TURNS = 64, CHANCES = 4 };
+    int fewest = count + 1, chances = CHANCES, turn, i;
+    for (turn = 0; turn < TURNS * count; turn++) {
+        int to[RESTING], wrong = 0, hangs;
+        enter_all(m, at, r, count, interval);
+        for (i = 0; i < count; i++) {
+            to[i] = r[i].held + side_of(m, at, &r[i], &hangs);
+            wrong += to[i] != interval[i];
+        }
+        if (wrong == 0) {
+            return can_be(m, at);
+        }
+        chances = wrong < fewest ? CHANCES : chances - 1;
+        fewest = wrong < fewest ? wrong : fewest;
+        for (i = 0; i < count; i++) {
+            if (to[i] != interval[i]) {
+                interval[i] = to[i];
+                if (chances <= 0) {
+                    break;
+                }
+            }
+        }
+    }
+    return 0;
+}
+#else
+#define RESTING MOST
+#define pivot(m, at, r, count, interval) 0
+#endif
+
+/* next: the combination in which all agree, with fewest changes, then most that is held; 0: there is none.  how: what
  * agrees says */
-static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before, int *how)
+static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before, int *next, int *how)
 {
     int best = -1, least = 0, all = 1, number, i;
     for (i = 0; i < count; i++) {
@@ -456,30 +499,37 @@ static int best_of(const contacts *m, instant *at, const resting *r, int count, 
             *how = agreed;
         }
     }
-    return best;
+    if (best >= 0) {
+        (void)combine(r, count, best, before, next);
+    }
+    return best >= 0;
 }
 
 /* What is at rest: whether it is held, and where else it goes.  Changes count from where things were before the instant
  * with `turned`, so that what turns round changes once; else from now. */
 static void resolve(const contacts *m, instant *at, int turned)
 {
-    resting r[MOST];
-    int now[MOST], before[MOST], next[MOST], best, how = 2, i;
+    resting r[RESTING];
+    int now[RESTING], before[RESTING], next[RESTING], found, how = 2, i;
     const int count = find_resting(m, at, r);
     for (i = 0; i < count; i++) {
         now[i] = interval_of(m, at, r[i].expression);
         before[i] = turned ? interval_before(m, at, r[i].expression) : now[i];
+        next[i] = now[i];
     }
     if (count == 0 || agrees(m, at, r, count, now) == 2) {
         return;
     }
-    best = best_of(m, at, r, count, before, &how);
-    if (best < 0) {
+    if (count <= MOST) {
+        found = best_of(m, at, r, count, before, next, &how);
+    } else {
+        found = pivot(m, at, r, count, next);
+    }
+    if (!found) {
         say(at, PL_UNDECIDED);
         enter_all(m, at, r, count, now);
     } else {
         say(at, how == 1 ? IN_DOUBT : 0);
-        (void)combine(r, count, best, before, next);
         list_changes(m, at, r, count, now, next);
         enter_all(m, at, r, count, next);
     }

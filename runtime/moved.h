@@ -8,7 +8,7 @@ typedef struct leaving { /* what stood before the event */
     int met;             /* whether what is met has a derivative: no formula that goes on without a jump */
     int leapt;           /* a load that jumps has met it, at a time of its own */
     int function, crossings_before, impacts;
-    uint32_t held;
+    uint64_t held;
     unsigned doubt; /* for the case that the field jumps */
 } leaving;
 
@@ -185,7 +185,7 @@ static int field_jumps(const pl_events *m, const pl_instant *at, real *field)
 static void arrive(const pl_events *m, pl_instant *at, const leaving *l)
 {
     real *field = field_before(m, at);
-    const uint32_t begun = held_now(m, at) & ~l->held, ended = l->held & ~held_now(m, at);
+    const uint64_t begun = held_now(m, at) & ~l->held, ended = l->held & ~held_now(m, at);
     const int jumped = at->chain.all - l->impacts;
     unsigned doubt = l->doubt;
     if (!l->met) {

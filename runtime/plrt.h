@@ -424,7 +424,7 @@ typedef struct pl_hold {
 /* Constraints that exclude each other, as bits.  Friction on a body that a contact at rest holds brakes what presses
  * there; while it does not stick it slips to that side, 1 or -1 interval on, whatever its velocity. */
 typedef struct pl_conflict {
-    uint32_t set;
+    uint64_t set;
     int hold, side; /* number of that friction and its side; hold -1: no such friction */
 } pl_conflict;
 

@@ -9,8 +9,9 @@
 typedef pl_events contacts;
 typedef pl_instant instant;
 
-/* How many at rest are looked at together: 3^MOST combinations, each with a series of its own */
+/* How many at rest are looked at together: 3^MOST combinations, each with a series of its own; how many there may be */
 enum { MOST = 4 };
+#define RESTING 64
 
 #include "contacts.h"
 
@@ -76,12 +77,12 @@ static int holds_now(const pl_events *m, const pl_instant *at, int hold)
 }
 
 /* All that is held, as bits */
-static uint32_t held_now(const pl_events *m, const pl_instant *at)
+static uint64_t held_now(const pl_events *m, const pl_instant *at)
 {
-    uint32_t held = 0;
+    uint64_t held = 0;
     int i;
     for (i = 0; i < m->holds; i++) {
-        held |= (uint32_t)holds_now(m, at, i) << i;
+        held |= (uint64_t)holds_now(m, at, i) << i;
     }
     return held;
 }
@@ -106,7 +107,7 @@ static void go_to(const pl_events *m, pl_instant *at, int expression, int interv
 
 static int can_be(const pl_events *m, const pl_instant *at)
 {
-    const uint32_t held = held_now(m, at);
+    const uint64_t held = held_now(m, at);
     int i;
     for (i = 0; i < m->conflicts && (held & m->conflict[i].set) != m->conflict[i].set; i++) {
         ;
@@ -416,7 +417,7 @@ static void follow(const pl_events *m, pl_instant *at, int jumped)
 static int find_resting(const pl_events *m, const pl_instant *at, resting *found)
 {
     int count = 0, i;
-    for (i = 0; i < m->holds && count < MOST; i++) {
+    for (i = 0; i < m->holds && count < RESTING; i++) {
         const pl_hold *h = &m->hold[i];
         const int side = at->interval[h->expression] - h->interval;
         if (side < -1 || side > 1) {
@@ -437,38 +438,39 @@ static int find_resting(const pl_events *m, const pl_instant *at, resting *found
 }
 
 /* Where friction slips of what a contact holds, by bits of all that is held: 1 or -1; 0: it is free to move */
-static int side_beside(const pl_events *m, uint32_t held, int hold)
+static int side_beside(const pl_events *m, uint64_t held, int hold)
 {
     int i;
     for (i = 0; i < m->conflicts; i++) {
-        if (m->conflict[i].hold == hold && ((held | (uint32_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
+        if (m->conflict[i].hold == hold && ((held | (uint64_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
             return m->conflict[i].side;
         }
     }
     return 0;
 }
 
-/* Whether one of them agrees with the intervals, of which the series is: as agrees */
-static int agrees_one(const pl_events *m, const pl_instant *at, uint32_t held, const resting *r)
+static int side_of(const pl_events *m, const pl_instant *at, const resting *r, int *hangs)
 {
     const pl_hold *h = &m->hold[r->hold];
-    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, held, r->hold);
+    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, held_now(m, at), r->hold);
     int leaves;
+    *hangs = 0;
     if (beside != 0) {
-        return side == beside ? 2 : 0;
+        return beside;
     }
     /* Another impact has parted it; without one, a speed is what rounding has left. */
     if (at->starting >= 0 && r->impact >= 0 && speed_of(m, at, r->impact) < 0) {
-        return at->interval[r->expression] == free_of(m, r->impact) ? 2 : 0;
+        return free_of(m, r->impact) - r->held;
     }
     if (side == 0) {
-        return lets_go(m, at, r->hold, 0) > 0 || lets_go(m, at, r->hold, 1) > 0 ? 0 : 2;
+        return lets_go(m, at, r->hold, 1) > 0 ? 1 : lets_go(m, at, r->hold, 0) > 0 ? -1 : 0;
     }
     if ((side > 0 ? h->up : h->down) < 0) {
         return 0;
     }
     leaves = lets_go(m, at, r->hold, side > 0);
-    return leaves < 0 ? 0 : leaves == 0 ? 1 : 2;
+    *hangs = leaves == 0;
+    return leaves < 0 ? 0 : side;
 }
 
 static int agrees(const pl_events *m, pl_instant *at, const resting *r, int count, const int *interval)
@@ -482,8 +484,12 @@ static int agrees(const pl_events *m, pl_instant *at, const resting *r, int coun
     }
     renew(m, at);
     for (i = 0; i < count && agreed != 0; i++) {
-        const int one = agrees_one(m, at, held_now(m, at), &r[i]);
-        agreed = one < agreed ? one : agreed;
+        int hangs;
+        if (side_of(m, at, &r[i], &hangs) != interval[i] - r[i].held) {
+            agreed = 0;
+        } else if (hangs) {
+            agreed = 1;
+        }
     }
     return agreed;
 }

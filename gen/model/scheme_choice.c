@@ -268,7 +268,12 @@ static void find_obstacle(void *context)
 		model->nonlinear.why = "is the guard of a stop, and not linear";
 		return;
 	}
-	if (!model->nonlinear.obstacle)
+	if (b->crowded) {
+		atom = first_atom(b, true);
+		model->nonlinear.obstacle = atom ? atom->node : b->spec->when->guard->child[0];
+		model->nonlinear.why = "and others have more regions than it takes";
+	}
+	if (!model->nonlinear.obstacle || b->crowded)
 		return;
 	rewrite = rewrite_of(model->nonlinear.obstacle, b->spec->lagrange.energies == 0);
 	model->nonlinear.why = format("%s%s%s", why, *rewrite ? "; " : "", rewrite);
@@ -294,6 +299,14 @@ static bool goes_by_series(const struct building *b)
 	bool chosen = !model->request.at.scheme.source && !is_piecewise_linear(b);
 	return (stops_at_events(model->scheme) || chosen) && !impacts_change(b) && !b->request->solution &&
 	       !b->request->loads_left;
+}
+
+/* Friction and impacts that no scheme was asked for, and that have more regions than exact can take */
+static bool is_crowded(struct building *b)
+{
+	return !b->model->request.at.scheme.source && is_piecewise_linear(b) && !impacts_change(b) &&
+	       (b->model->contacts.impacts > 0 || holds_friction(b)) && !b->request->solution &&
+	       b->spec->tuned.count == 0 && !b->spec->request.cached && has_too_many_regions(b);
 }
 
 static bool goes_by_regions(const struct building *b)
@@ -341,13 +354,15 @@ static bool choose_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->contacts.impacts == 0;
-	const bool constrained = b->spec->count.multipliers > 0, exact = !constrained && is_piecewise_linear(b);
+	const bool constrained = b->spec->count.multipliers > 0;
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(report_friction_stands, b);
+	b->crowded = is_crowded(b);
+	const bool exact = !constrained && is_piecewise_linear(b);
 	if ((!linear || constrained) && !model->request.at.scheme.source && !b->request->solution && !exact) {
 		model->scheme = scheme_of_choice(b);
 		choose_order(model, b->request->single);
@@ -357,7 +372,8 @@ static bool choose_scheme(struct building *b)
 	if (model->scheme == SCHEME_EXACT)
 		keep_loads(b, format("scheme exact has no quadrature; %s have", leaving_schemes(" and ")));
 	if (model->scheme == SCHEME_EXACT && (!linear || b->request->again.by_regions) && is_piecewise_linear(b)) {
-		find_regions(b);
+		if (!model->switching)
+			find_regions(b);
 		collect_full(b);                /* for outputs and NAME_rhs */
 		if (!diagnostics_errors())
 			statement_guard(part_loads, b);

@@ -369,6 +369,7 @@ static void check_truncation(const struct building *b)
 
 static void check_need(const struct building *b, bool left)
 {
+	enum { FEW = 7 };               /* impacts that exact has too many regions of */
 	const struct model *model = b->model;
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	if (b->spec->operators.given && (!scheme->leaves || !left || scheme->expands))
@@ -384,7 +385,7 @@ static void check_need(const struct building *b, bool left)
 		say_warning(scheme_place(b), NULL,
 			    "scheme %s is of first order in h: this model is linear, and exact has no error",
 			    scheme->name);
-	else if (scheme->leaves && is_linear(b) && !curved_guard(b))
+	else if (scheme->leaves && is_linear(b) && !curved_guard(b) && model->contacts.impacts < FEW)
 		say_warning(scheme_place(b), NULL,
 			    left ? "scheme %s approximates the loads: this model is linear, and exact has no error"
 				 : "scheme %s has nothing to do: this model is linear, and exact covers it",
@@ -519,7 +520,7 @@ void warn(struct building *b)
 	bool left = model->remainder.force_columns > 0;
 	struct jacobian j = { .b = b };
 	lint(b);
-	left = left || curved_guard(b);
+	left = left || curved_guard(b) || b->crowded;
 	if (left && model->nonlinear.obstacle && b->spec->required.needs == 0)     /* else the scheme is chosen */
 		say_note(model->nonlinear.obstacle->start, "scheme %s%s, not exact: '%s' %s%s",
 			 scheme_name(model->scheme),

@@ -26,7 +26,7 @@ int  count_candidates(struct switching *s);                 /* in one segment of
 void check_sum(const struct building *b, const struct switching *s);  /* of regions that are cached; refuses others */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
-_Noreturn void too_many(const struct switching *s);
+_Noreturn void too_many(struct building *b, const struct switching *s);
 _Noreturn void too_many_in_time(const struct switching *s);
 /* A region's matrix is no sum over switching functions, at this node */
 _Noreturn void refuse_cache(const struct building *b, const struct switching *s, const struct node *node,

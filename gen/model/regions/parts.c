@@ -193,6 +193,14 @@ void find_regions(struct building *b)
 	statement_guard(search, b);
 }
 
+bool has_too_many_regions(struct building *b)
+{
+	if (!refusal_of(search, b))
+		return false;
+	b->model->switching = NULL;
+	return b->crowded;
+}
+
 static void place_loads_of(struct building *b, const struct switching *s)
 {
 	for (int r = 0; r < s->regions; r++)

@@ -23,6 +23,8 @@ enum {
 bool is_piecewise_linear(const struct building *b)
 {
 	int segments = b->model->system.segments;
+	if (b->crowded)
+		return false;
 	bool switches = segments == 1 || b->model->contacts.impacts > 0 || b->request->again.by_regions;
 	for (int s = 0; s < segments; s++)
 		for (int i = 0; i < b->model->n; i++) {
@@ -549,6 +551,23 @@ static bool rows_change(const struct building *b, int rows, const int *row)
 	return changes || impacts_change(b);
 }
 
+/* Whether friction stands in an equation with others, or with what switches else */
+static bool frictions_meet(const struct building *b, const struct switching *s)
+{
+	bool meet = false;
+	for (int k = 0; k < s->rows; k++) {
+		const struct form *form = b->segment_equations[0].residual[s->row[k]].form;
+		int atoms = 0, frictions = 0;
+		for (int i = 0; i < form->terms; i++) {
+			const struct atom *a = form->term[i].basis.atom;
+			atoms += a != NULL;
+			frictions += a && is_friction(a);
+		}
+		meet = meet || (frictions > 0 && atoms > 1);
+	}
+	return meet;
+}
+
 /* Whether regions that are too many for tables may be made on the target; what stands against it else is said */
 static bool may_cache(const struct building *b, const struct switching *s)
 {
@@ -589,8 +608,8 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	struct switching *s = regions_found(b, rows, row, b->spec->request.cached && !walked);
 	if (s->many_in_time && !may_cache(b, s))
 		too_many_in_time(s);
-	if (s->many && !may_cache(b, s))
-		too_many(s);
+	if (s->many && (!may_cache(b, s) || frictions_meet(b, s)))
+		too_many(b, s);
 	if (s->many)
 		s = regions_found(b, rows, row, true);
 	if (!b->model->relative)                /* else its error was reported */

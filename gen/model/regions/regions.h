@@ -93,6 +93,7 @@ int  possible_regions(const struct switching *s);
 
 /* ---- parts.c: regions of independent coordinates ---- */
 
+bool has_too_many_regions(struct building *b);              /* also finds them, where that can be done */
 void find_regions(struct building *b);                      /* says what cannot be treated */
 /* of a region of a part in the number of the model's: its intervals, by the strides of the whole */
 int  share_of_region(const struct region_part *part, const struct switching *full, int region);

@@ -118,80 +118,6 @@ static bool invert(const struct together *t, int count, const int *which, mpq_t 
 	return rational_inverse(count, a, inverse, &column);
 }
 
-static double dot_samples(const struct constraints *all, int a, int b)
-{
-	double sum = 0;
-	for (int i = 0; i < all->w->system->states; i++)
-		sum += all->constraint[a].sample[i] * all->constraint[b].sample[i];
-	return sum;
-}
-
-/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
-static int side_beside(const struct constraints *all, int friction, int contact)
-{
-	const struct entry *answer = &all->constraint[friction].delassus[contact];
-	bool along = is_number_entry(answer) ? mpq_sgn(answer->number) < 0 : dot_samples(all, friction, contact) > 0;
-	return along == all->c->hold[friction].above ? 1 : -1;
-}
-
-static void note_conflict(const struct constraints *all, int count, const int *which)
-{
-	struct contacts *c = all->c;
-	struct conflict new = { .hold = NONE };
-	for (int i = 0; i < count; i++)
-		new.set |= 1UL << which[i];
-	for (int i = 0; i < c->conflicts; i++)
-		if ((c->conflict[i].set & new.set) == c->conflict[i].set)
-			return;
-	int frictions = 0, at = 0;
-	for (int i = 0; i < count; i++) {
-		bool drags = all->constraint[which[i]].drag != NONE;
-		frictions += drags;
-		at = drags ? i : at;
-	}
-	if (frictions == count)
-		error(all->constraint[which[0]].node->at, "without one of them its part is known",
-		      "friction holds what other friction holds already: while all of it sticks its force is not "
-		      "determined");
-	if (count == 2 && frictions == 1) {
-		new.hold = which[at];
-		new.side = side_beside(all, which[at], which[!at]);
-	}
-	*MORE(c->conflict, c->conflicts) = new;
-}
-
-/* Whether one is always a sum of others: by their Gram matrix at some state, by Cholesky */
-static bool are_dependent(const struct constraints *all, int count, const int *which)
-{
-	double *a = ARRAY(double, count * count);
-	for (int i = 0; i < count; i++)
-		for (int j = 0; j <= i; j++) {
-			double sum = dot_samples(all, which[i], which[j]);
-			for (int k = 0; k < j; k++)
-				sum -= a[i * count + k] * a[j * count + k];
-			if (i == j && !(sum > 1e-9 * dot_samples(all, which[i], which[i])))
-				return true;
-			a[i * count + j] = i == j ? sqrt(sum) : sum / a[j * count + j];
-		}
-	return false;
-}
-
-/* Sets of few come first, so that those with a conflict in them are not noted again. */
-static void note_conflicts(const struct constraints *all, int members, const int *member)
-{
-	while (members > 0 && all->constraint[member[members - 1]].of != NONE)
-		members--;                      /* derivatives are held with what they follow */
-	for (int size = 2; size <= members; size++)
-		for (int set = 0; set < 1 << members; set++) {
-			int count = 0, *which = ARRAY(int, members);
-			for (int i = 0; i < members; i++)
-				if (set >> i & 1)
-					which[count++] = member[i];
-			if (count == size && are_dependent(all, count, which))
-				note_conflict(all, count, which);
-		}
-}
-
 /* Of member 0, where these hold and the others of the group slip */
 static int force_together(const struct together *t)
 {
@@ -233,7 +159,8 @@ static int force_in_cases(struct together *t, int next)
 
 static bool moves(const struct constraints *all, int members, const int *member)
 {
-	bool any = false;
+	enum { MOST = 4 };              /* beyond, a sum for each combination is too much */
+	bool any = own_of(all, members, member) > MOST;
 	for (int i = 0; i < members; i++) {
 		const struct constraint *h = &all->constraint[member[i]];
 		any = any || h->moving || (h->drag != NONE && all->w->step->model->contacts.drag[h->drag].by);
@@ -257,22 +184,14 @@ static void make_force(struct constraints *all, int index, int members, const in
 	h->force = hold_choice(w, &all->c->hold[index], held, h->slips == NONE ? all->none : h->slips);
 }
 
-/* The members of its group; they are too many for as many combinations as the target looks at */
+/* The members of its group */
 static int *members_of(const struct constraints *all, int index, int *members)
 {
-	enum { MOST = 4 };
-	const struct constraint *h = &all->constraint[index];
-	int *member = ARRAY(int, all->constraints), own = 0;
+	int *member = ARRAY(int, all->constraints);
 	*members = 0;
 	for (int i = 0; i < all->constraints; i++)
-		if (all->constraint[i].group == h->group) {
+		if (all->constraint[i].group == all->constraint[index].group)
 			member[(*members)++] = i;
-			own += all->constraint[i].of == NONE;
-		}
-	if (own > MOST)
-		error(h->node ? h->node->at : all->w->step->model->contacts.impact[h->impact].when->at,
-		      "a piecewise-linear model takes more",
-		      "beside what is not piecewise linear at most %d frictions and contacts act on each other", MOST);
 	return member;
 }
 
@@ -567,6 +486,17 @@ int held_force(struct sequencing *w, int force_column)
 	return sum_sequence(w, &force);
 }
 
+/* The target has those that hold, and impacts, as bits. */
+static void check_number(const struct constraints *all)
+{
+	enum { HELD = 64, IMPACTS = 32 };
+	const struct model_contacts *contacts = &all->w->step->model->contacts;
+	if (all->own > HELD)
+		error(place_of(all, HELD), NULL, "beside a series more than the limit of %d frictions and contacts", HELD);
+	if (contacts->impacts > IMPACTS)
+		error(contacts->impact[IMPACTS].when->at, NULL, "beside a series more than the limit of %d impacts", IMPACTS);
+}
+
 void hold_contacts(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
@@ -583,6 +513,7 @@ void hold_contacts(struct sequencing *w)
 	c->series_impact = ARRAY(struct series_impact, model->contacts.impacts);
 	c->columns = model->spec->joined.columns;
 	find_constraints(&all);
+	check_number(&all);
 	c->hold = ARRAY(struct series_hold, all.constraints);
 	c->holds = all.own;
 	c->forces = all.constraints;

@@ -8,6 +8,128 @@
 #include "step/series/expansion.h"
 #include "inner.h"
 
+#include <math.h>
+
+/* ---- what cannot be held all at once ---- */
+
+static double dot_samples(const struct constraints *all, int a, int b)
+{
+	double sum = 0;
+	for (int i = 0; i < all->w->system->states; i++)
+		sum += all->constraint[a].sample[i] * all->constraint[b].sample[i];
+	return sum;
+}
+
+/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
+static int side_beside(const struct constraints *all, int friction, int contact)
+{
+	const struct entry *answer = &all->constraint[friction].delassus[contact];
+	bool along = is_number_entry(answer) ? mpq_sgn(answer->number) < 0 : dot_samples(all, friction, contact) > 0;
+	return along == all->c->hold[friction].above ? 1 : -1;
+}
+
+void note_conflict(const struct constraints *all, int count, const int *which)
+{
+	struct contacts *c = all->c;
+	struct conflict new = { .hold = NONE };
+	for (int i = 0; i < count; i++)
+		new.set |= (uint64_t)1 << which[i];
+	for (int i = 0; i < c->conflicts; i++)
+		if ((c->conflict[i].set & new.set) == c->conflict[i].set)
+			return;
+	int frictions = 0, at = 0;
+	for (int i = 0; i < count; i++) {
+		bool drags = all->constraint[which[i]].drag != NONE;
+		frictions += drags;
+		at = drags ? i : at;
+	}
+	if (frictions == count)
+		error(all->constraint[which[0]].node->at, "without one of them its part is known",
+		      "friction holds what other friction holds already: while all of it sticks its force is not "
+		      "determined");
+	if (count == 2 && frictions == 1) {
+		new.hold = which[at];
+		new.side = side_beside(all, which[at], which[!at]);
+	}
+	*MORE(c->conflict, c->conflicts) = new;
+}
+
+struct place place_of(const struct constraints *all, int index)
+{
+	const struct constraint *h = &all->constraint[index];
+	return h->node ? h->node->at : all->w->step->model->contacts.impact[h->impact].when->at;
+}
+
+static _Noreturn void report_dependent(const struct constraints *all, int index)
+{
+	error(place_of(all, index), "without one of them its part is known",
+	      "while all frictions stick and all contacts rest that act on each other their forces are not determined");
+}
+
+/* Whether one is always a sum of others: by their Gram matrix at some state, by Cholesky */
+static bool are_dependent(const struct constraints *all, int count, const int *which)
+{
+	double *a = ARRAY(double, count * count);
+	for (int i = 0; i < count; i++)
+		for (int j = 0; j <= i; j++) {
+			double sum = dot_samples(all, which[i], which[j]);
+			for (int k = 0; k < j; k++)
+				sum -= a[i * count + k] * a[j * count + k];
+			if (i == j && !(sum > 1e-9 * dot_samples(all, which[i], which[i])))
+				return true;
+			a[i * count + j] = i == j ? sqrt(sum) : sum / a[j * count + j];
+		}
+	return false;
+}
+
+/* Those of a group that are no derivatives, which are held with what they follow, come first. */
+int own_of(const struct constraints *all, int members, const int *member)
+{
+	while (members > 0 && all->constraint[member[members - 1]].of != NONE)
+		members--;
+	return members;
+}
+
+/* Pairs, and that nothing else is a sum of others: friction that one of its pair excludes is left out of those */
+static void note_pairs(const struct constraints *all, int members, const int *member)
+{
+	int count = 0, *kept = ARRAY(int, members);
+	for (int i = 0; i < members; i++) {
+		bool alone = true;
+		for (int j = 0; j < members; j++) {
+			const int pair[] = { member[i < j ? i : j], member[i < j ? j : i] };
+			if (i == j || !are_dependent(all, 2, pair))
+				continue;
+			note_conflict(all, 2, pair);
+			alone = alone && all->constraint[member[i]].drag == NONE;
+		}
+		if (alone)
+			kept[count++] = member[i];
+	}
+	if (are_dependent(all, count, kept))
+		report_dependent(all, kept[count - 1]);
+}
+
+/* Sets of few come first, so that those with a conflict in them are not noted again. */
+void note_conflicts(const struct constraints *all, int members, const int *member)
+{
+	enum { MOST = 8 };              /* so many have sets that all can be looked at */
+	members = own_of(all, members, member);
+	if (members > MOST)
+		note_pairs(all, members, member);
+	for (int size = 2; size <= members && members <= MOST; size++)
+		for (int set = 0; set < 1 << members; set++) {
+			int count = 0, *which = ARRAY(int, members);
+			for (int i = 0; i < members; i++)
+				if (set >> i & 1)
+					which[count++] = member[i];
+			if (count == size && are_dependent(all, count, which))
+				note_conflict(all, count, which);
+		}
+}
+
+/* ---- forces ---- */
+
 /* With the sign of the sliding velocity */
 int along_sliding(struct sequencing *w, const struct series_hold *hold, int force)
 {

@@ -53,6 +53,10 @@ int  rate_state(const struct sequencing *w, const struct basis *basis); /* whose
 
 /* ---- group.c: forces of those that act on each other ---- */
 
+struct place place_of(const struct constraints *all, int index);
+int  own_of(const struct constraints *all, int members, const int *member);
+void note_conflict(const struct constraints *all, int count, const int *which);
+void note_conflicts(const struct constraints *all, int members, const int *member);
 int  along_sliding(struct sequencing *w, const struct series_hold *hold, int force); /* with the velocity's sign */
 int  hold_choice(struct sequencing *w, const struct series_hold *hold, int held, int other);
 void solve_group(const struct constraints *all, int members, int *member);

@@ -36,7 +36,7 @@ struct series_impact {                     /* an impact */
 	double per;                 /* the switching function's for a guard of 1 */
 };
 struct conflict {                   /* holds that cannot be all at once */
-	unsigned long set;          /* as bits */
+	uint64_t set;          /* as bits */
 	int hold, side;             /* friction of what a contact holds: 1 or -1, where it slips then; NONE: others */
 };
 struct series_jump { int state, watch; }; /* a state takes the value of what is watched */

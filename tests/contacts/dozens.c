@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Twenty blocks that rub on their neighbours, twenty balls that strike theirs: by Taylor series in long double over
+ * short pieces, each event halved in on its series. Which of those at rest stick is found by projected relaxation of
+ * all their forces (Gauss and Seidel, with overrelaxation). With SPECS it prints its systems. */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { N = 20, ORDER = 20, SECONDS = 6 };
+static const double piece = 0.01, faster = 1.75, belt = 0.1, hardest = 6, load = 4, w = 1.3, gap = 0.001, restitution = 0.9;
+
+static double mass_of(int i) { return 1 + 0.05 * (i * 3 % 7); }
+static double ground_of(bool balls, int i) { return balls ? 10 + 0.25 * (i * 5 % 11) : i == 0 ? 20 : i == N - 1 ? 15 : 0; }
+static double friction_of(int i) { return i == 0 ? hardest : 0.3 + 0.01 * (i * 7 % N); }
+
+#ifdef SPECS
+
+static void print_between(bool balls, int i)
+{
+	if (balls)
+		printf("stop between x%d, x%d at %g restitution %g\n", i - 1, i, gap, restitution);
+	else
+		printf("spring 100 between x%d, x%d\nfriction %g between x%d, x%d\n", i - 1, i, friction_of(i), i - 1, i);
+}
+
+int main(int argc, char **argv)
+{
+	const bool balls = argc > 1 && strcmp(argv[1], "twenty_balls") == 0;
+	printf("model %s\ncoord x0", balls ? "twenty_balls" : "twenty_blocks");
+	for (int i = 1; i < N; i++)
+		printf(", x%d", i);
+	printf("\n%g*x0'' + %g*x0%s = 0\n", mass_of(0), ground_of(balls, 0),
+	       balls ? "" : " + friction(x0' - 0.1, 6)");
+	for (int i = 1; i < N; i++) {
+		printf("mass %g at x%d\n", mass_of(i), i);
+		if (ground_of(balls, i) > 0)
+			printf("spring %g between x%d, ground\n", ground_of(balls, i), i);
+	}
+	for (int i = 1; i < N; i++)
+		print_between(balls, i);
+	if (balls)
+		printf("init x0 = -1\n");
+	else
+		printf("force %g*cos(%g*t) at x%d\n", load, w, N - 1);
+	printf("step 0.01\n");
+	return 0;
+}
+
+#else
+
+#include "twenty_balls.h"
+#include "twenty_blocks.h"
+#include "tap.h"
+
+typedef long double wide;
+
+/* Contact i is between x[i - 1] and x[i]; friction 0 is on the belt. mode: what friction does, -1 and 1: it slips */
+struct motion {
+	bool balls;
+	wide q[N], v[N], t;
+	int mode[N];
+	wide c[ORDER + 1][N], force[ORDER + 1][N];      /* of a piece: positions, forces of friction */
+	long events;
+};
+
+/* Of contact i: what it compares, of these positions, velocities or accelerations */
+static wide compared(int i, const wide *x)
+{
+	return i == 0 ? x[0] : x[i - 1] - x[i];
+}
+
+/* x: accelerations less those by friction of this force */
+static void push(int i, wide force, wide *x)
+{
+	if (i > 0)
+		x[i - 1] -= force / mass_of(i - 1);
+	x[i] -= (i == 0 ? force : -force) / mass_of(i);
+}
+
+static wide answer(int i)
+{
+	return (i > 0 ? 1 / (wide)mass_of(i - 1) : 0) + 1 / (wide)mass_of(i);
+}
+
+/* Forces of those at rest between their bounds, by which what is free of these does not move */
+static void relax(const bool *rests, wide *force, wide *a)
+{
+	wide most = 1;
+	for (int sweep = 0; sweep < 2000 && most > 1e-17L; sweep++) {
+		most = 0;
+		for (int i = 0; i < N; i++) {
+			const wide more = force[i] + faster * compared(i, a) / answer(i);
+			const wide next = fminl(fmaxl(more, -friction_of(i)), friction_of(i));
+			if (!rests[i])
+				continue;
+			push(i, next - force[i], a);
+			most = fmaxl(most, fabsl(next - force[i]));
+			force[i] = next;
+		}
+	}
+}
+
+/* Forces of those that stick, so that they do not move: each acts on the one before and the one behind */
+static void hold(const int *mode, wide *force, wide *a)
+{
+	wide pivot[N], right[N];
+	for (int i = 0; i < N; i++) {
+		const wide beside = i == 0 || mode[i] != 0 || mode[i - 1] != 0 ? 0
+									       : (i == 1 ? 1 : -1) / (wide)mass_of(i - 1);
+		pivot[i] = answer(i) - (i > 0 && beside != 0 ? beside * beside / pivot[i - 1] : 0);
+		right[i] = compared(i, a) - (i > 0 && beside != 0 ? beside * right[i - 1] / pivot[i - 1] : 0);
+	}
+	for (int i = N - 1; i >= 0; i--) {
+		const bool next = i < N - 1 && mode[i] == 0 && mode[i + 1] == 0;
+		if (mode[i] == 0)
+			force[i] = (right[i] - (next ? (i == 0 ? 1 : -1) / (wide)mass_of(i) * force[i + 1] : 0)) / pivot[i];
+	}
+	for (int i = 0; i < N; i++)
+		if (mode[i] == 0)
+			push(i, force[i], a);
+}
+
+/* Coefficient k of the accelerations, without friction */
+static void accelerate(const struct motion *m, int k, wide *a)
+{
+	wide cosine = cosl(w * m->t + k * acosl(-1) / 2), power = 1;
+	for (int j = 1; j <= k; j++)
+		power *= w / (wide)j;
+	for (int i = 0; i < N; i++) {
+		a[i] = -(wide)ground_of(m->balls, i) * m->c[k][i];
+		if (!m->balls && i > 0)
+			a[i] -= 100 * (m->c[k][i] - m->c[k][i - 1]);
+		if (!m->balls && i < N - 1)
+			a[i] -= 100 * (m->c[k][i] - m->c[k][i + 1]);
+		if (!m->balls && i == N - 1)
+			a[i] += load * cosine * power;
+		a[i] /= mass_of(i);
+	}
+}
+
+static void expand(struct motion *m)
+{
+	memcpy(m->c[0], m->q, sizeof m->q);
+	memcpy(m->c[1], m->v, sizeof m->v);
+	for (int k = 0; k + 2 <= ORDER; k++) {
+		wide a[N];
+		accelerate(m, k, a);
+		for (int i = 0; i < N && !m->balls; i++) {
+			m->force[k][i] = k == 0 ? m->mode[i] * (wide)friction_of(i) : 0;
+			push(i, m->force[k][i], a);
+		}
+		if (!m->balls)
+			hold(m->mode, m->force[k], a);
+		for (int i = 0; i < N; i++)
+			m->c[k + 2][i] = a[i] / ((k + 1) * (k + 2));
+	}
+}
+
+static void state_at(const struct motion *m, wide s, wide *q, wide *v, wide *force)
+{
+	for (int i = 0; i < N; i++) {
+		q[i] = v[i] = force[i] = 0;
+		for (int k = ORDER; k >= 0; k--) {
+			v[i] = v[i] * s + q[i];
+			q[i] = q[i] * s + m->c[k][i];
+		}
+		for (int k = ORDER - 2; k >= 0 && !m->balls; k--)
+			force[i] = force[i] * s + m->force[k][i];
+	}
+}
+
+static wide sliding(int i, const wide *v)
+{
+	return compared(i, v) - (i == 0 ? belt : 0);
+}
+
+/* How far contact i is beyond its event, s on */
+static wide beyond(const struct motion *m, int i, wide s)
+{
+	wide q[N], v[N], force[N];
+	if (m->balls && i == 0)
+		return -1;
+	state_at(m, s, q, v, force);
+	if (m->balls)
+		return compared(i, v) > 0 ? compared(i, q) - gap : -1;
+	return m->mode[i] == 0 ? fabsl(force[i]) - friction_of(i) : -m->mode[i] * sliding(i, v);
+}
+
+/* Each from the velocities that the one before left, again from the first */
+static void strike(struct motion *m)
+{
+	for (int i = 1; i < N; i++) {
+		const wide speed = compared(i, m->v), off = compared(i, m->q) - gap;
+		if (off < -1e-15L || speed <= 0)
+			continue;
+		push(i, (1 + restitution) * speed / answer(i), m->v);
+		m->events++;
+		i = 0;
+	}
+}
+
+/* What friction does from here on. at: the one whose velocity has come to 0 */
+static void decide(struct motion *m, int at)
+{
+	bool rests[N];
+	wide a[N], force[N];
+	memcpy(m->c[0], m->q, sizeof m->q);
+	accelerate(m, 0, a);
+	for (int i = 0; i < N; i++) {
+		rests[i] = m->mode[i] == 0 || i == at;
+		force[i] = rests[i] ? 0 : m->mode[i] * (wide)friction_of(i);
+		push(i, force[i], a);
+	}
+	relax(rests, force, a);
+	for (int i = 0; i < N; i++) {
+		const int before = m->mode[i];
+		if (rests[i])
+			m->mode[i] = fabsl(force[i]) < friction_of(i) - 1e-15L ? 0 : force[i] > 0 ? 1 : -1;
+		m->events += m->mode[i] > before ? m->mode[i] - before : before - m->mode[i];
+	}
+}
+
+static void follow(struct motion *m)
+{
+	while (m->t < SECONDS) {
+		const wide whole = fminl(piece, SECONDS - m->t);
+		wide end = whole, force[N];
+		int at = -1;
+		expand(m);
+		for (int i = 0; i < N; i++) {
+			wide from = 0, to = end;
+			if (beyond(m, i, end) <= 0)
+				continue;
+			for (int k = 0; k < 80; k++)
+				*(beyond(m, i, (from + to) / 2) > 0 ? &to : &from) = (from + to) / 2;
+			end = to;
+			at = i;
+		}
+		state_at(m, end, m->q, m->v, force);
+		m->t = end < whole ? m->t + end : whole < piece ? SECONDS : m->t + whole;
+		if (at >= 0 && m->balls)
+			strike(m);
+		else if (at >= 0)
+			decide(m, m->mode[at] ? at : -1);
+	}
+}
+
+static bool ends_there(const struct motion *m, const double *y, unsigned long long events, int status)
+{
+	double worst = 0;
+	for (int i = 0; i < N; i++) {
+		worst = worse(worst, fabs(y[i] - (double)m->q[i]));
+		worst = worse(worst, fabs(y[N + i] - (double)m->v[i]));
+	}
+	note("%llu events, expected %ld; states off by %.3g, tolerance 1e-11; status %d", events, m->events, worst,
+	     status);
+	return events == (unsigned long long)m->events && worst <= 1e-11 && status == 0;
+}
+
+int main(void)
+{
+	static struct motion of_blocks, of_balls = { .balls = true, .q = { -1 } };
+	static twenty_blocks s;
+	static twenty_balls b;
+	twenty_blocks_init(&s);
+	twenty_balls_init(&b);
+	twenty_blocks_run(&s, SECONDS * 100, NULL);
+	twenty_balls_run(&b, SECONDS * 100, NULL);
+	for (int i = 0; i < N; i++)
+		of_blocks.mode[i] = i == 0 ? -1 : 0;
+	decide(&of_blocks, -1);
+	of_blocks.events = 0;
+	follow(&of_blocks);
+	follow(&of_balls);
+	ok(ends_there(&of_blocks, s.y, twenty_blocks_crossed(&s), twenty_blocks_status(&s)), "blocks");
+	ok(ends_there(&of_balls, b.y, twenty_balls_crossed(&b), twenty_balls_status(&b)), "balls");
+	return tap_end();
+}
+
+#endif
