@@ -443,9 +443,9 @@ static int combine(const resting *r, int count, int number, const int *before, i
 }
 
 #ifdef RESTING
-/* More than MOST of them, in `interval`, by block pivoting: all that do not agree change over together while that leaves
- * fewer of them, else the first of them alone, which ends where forces follow from velocities by a P-matrix.  0: they
- * do not come to agree. */
+/* More than MOST of them, in `interval`, by block pivoting: all that do not agree change over together while that
+ * leaves fewer of them, else the first of them alone, which ends where velocities answer to forces by a P-matrix.  0:
+ * they do not come to agree. */
 static int pivot(const contacts *m, instant *at, const resting *r, int count, int *interval)
 {
     enum { TURNS = 64, CHANCES = 4 };

@@ -186,29 +186,31 @@ static void put_on(const pl_events *m, pl_instant *at, int k)
     renew(m, at);
 }
 
-/* Puts what is held where it is held, but for rounding. */
-static void put_back(const pl_events *m, pl_instant *at, int hold)
+/* Whether a watch is 0 but for rounding */
+static int is_none(const pl_events *m, const pl_instant *at, int watch)
 {
-    const pl_hold *h = &m->hold[hold];
-    take(m, at, hold, m->back, m->back_watch, value_of(m, at, h->velocity));
-    if (h->impact >= 0) {
-        put_on(m, at, h->impact);
-    } else {
-        renew(m, at);
-    }
+    const column w = watched(m, at, watch);
+    return certain(&w) >= 0 && certain(&w) <= 0;
 }
 
 /* Whether what is held has moved by more than rounding */
 static int is_slack(const pl_events *m, const pl_instant *at, int hold)
 {
     const pl_hold *h = &m->hold[hold];
-    const column velocity = watched(m, at, h->velocity);
-    column place;
-    if (h->impact < 0) {
-        return !(certain(&velocity) >= 0 && certain(&velocity) <= 0);
+    return !is_none(m, at, h->velocity) || (h->impact >= 0 && !is_none(m, at, m->impact[h->impact].place));
+}
+
+/* Puts what is held where it is held, but for rounding: a place that is there stays, for others are held by it. */
+static void put_back(const pl_events *m, pl_instant *at, int hold)
+{
+    const pl_hold *h = &m->hold[hold];
+    const int placed = h->impact < 0 || is_none(m, at, m->impact[h->impact].place);
+    take(m, at, hold, m->back, m->back_watch, value_of(m, at, h->velocity));
+    if (placed) {
+        renew(m, at);
+    } else {
+        put_on(m, at, h->impact);
     }
-    place = watched(m, at, m->impact[h->impact].place);
-    return !(certain(&velocity) >= 0 && certain(&velocity) <= 0 && certain(&place) >= 0 && certain(&place) <= 0);
 }
 
 /* The derivatives of what is held are held with it: by oblique projections, until nothing moves any more. */
@@ -242,11 +244,13 @@ static void keep_moved(const pl_events *m, pl_instant *at)
 
 static void keep(const pl_events *m, pl_instant *at)
 {
-    int again, i;
-    for (again = 0; again < 3; again++) {
+    int again, slack = 1, i;
+    for (again = 0; again < 3 * m->holds && slack; again++) { /* what one is put back by moves those that it meets */
+        slack = 0;
         for (i = 0; i < m->holds; i++) {
             if (holds_now(m, at, i) && is_slack(m, at, i)) {
                 put_back(m, at, i);
+                slack = 1;
             }
         }
     }

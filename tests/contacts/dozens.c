@@ -8,10 +8,14 @@
 #include <string.h>
 
 enum { N = 20, ORDER = 20, SECONDS = 6 };
-static const double piece = 0.01, faster = 1.75, belt = 0.1, hardest = 6, load = 4, w = 1.3, gap = 0.001, restitution = 0.9;
+static const double piece = 0.01, faster = 1.75;
+static const double belt = 0.1, hardest = 6, load = 4, w = 1.3, gap = 0.001, restitution = 0.9;
 
 static double mass_of(int i) { return 1 + 0.05 * (i * 3 % 7); }
-static double ground_of(bool balls, int i) { return balls ? 10 + 0.25 * (i * 5 % 11) : i == 0 ? 20 : i == N - 1 ? 15 : 0; }
+static double ground_of(bool balls, int i)
+{
+	return balls ? 10 + 0.25 * (i * 5 % 11) : i == 0 ? 20 : i == N - 1 ? 15 : 0;
+}
 static double friction_of(int i) { return i == 0 ? hardest : 0.3 + 0.01 * (i * 7 % N); }
 
 #ifdef SPECS
@@ -21,7 +25,8 @@ static void print_between(bool balls, int i)
 	if (balls)
 		printf("stop between x%d, x%d at %g restitution %g\n", i - 1, i, gap, restitution);
 	else
-		printf("spring 100 between x%d, x%d\nfriction %g between x%d, x%d\n", i - 1, i, friction_of(i), i - 1, i);
+		printf("spring 100 between x%d, x%d\nfriction %g between x%d, x%d\n", i - 1, i, friction_of(i), i - 1,
+		       i);
 }
 
 int main(int argc, char **argv)
@@ -101,21 +106,24 @@ static void relax(const bool *rests, wide *force, wide *a)
 	}
 }
 
-/* Forces of those that stick, so that they do not move: each acts on the one before and the one behind */
+/* What contact i and the one before answer each other's force by, where both stick */
+static wide beside(const int *mode, int i)
+{
+	return i < 1 || i == N || mode[i] != 0 || mode[i - 1] != 0 ? 0 : (i == 1 ? 1 : -1) / (wide)mass_of(i - 1);
+}
+
+/* Forces of those that stick, so that they do not move: elimination from the first on */
 static void hold(const int *mode, wide *force, wide *a)
 {
 	wide pivot[N], right[N];
 	for (int i = 0; i < N; i++) {
-		const wide beside = i == 0 || mode[i] != 0 || mode[i - 1] != 0 ? 0
-									       : (i == 1 ? 1 : -1) / (wide)mass_of(i - 1);
-		pivot[i] = answer(i) - (i > 0 && beside != 0 ? beside * beside / pivot[i - 1] : 0);
-		right[i] = compared(i, a) - (i > 0 && beside != 0 ? beside * right[i - 1] / pivot[i - 1] : 0);
+		const wide share = i > 0 ? beside(mode, i) / pivot[i - 1] : 0;
+		pivot[i] = answer(i) - share * beside(mode, i);
+		right[i] = compared(i, a) - (i > 0 ? share * right[i - 1] : 0);
 	}
-	for (int i = N - 1; i >= 0; i--) {
-		const bool next = i < N - 1 && mode[i] == 0 && mode[i + 1] == 0;
+	for (int i = N - 1; i >= 0; i--)
 		if (mode[i] == 0)
-			force[i] = (right[i] - (next ? (i == 0 ? 1 : -1) / (wide)mass_of(i) * force[i + 1] : 0)) / pivot[i];
-	}
+			force[i] = (right[i] - (i < N - 1 ? beside(mode, i + 1) * force[i + 1] : 0)) / pivot[i];
 	for (int i = 0; i < N; i++)
 		if (mode[i] == 0)
 			push(i, force[i], a);

@@ -22,8 +22,8 @@ _Noreturn void too_many(struct building *b, const struct switching *s)
 {
 	const char *hint = "a scheme with a remainder, such as etdrk4, needs no regions";
 	if (has_events(s))
-		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions together; "
-		       "scheme taylor needs no regions";
+		hint = "what sticks, slips or bounces has three intervals, and all of them have their regions "
+		       "together; scheme taylor needs no regions";
 	b->crowded = true;
 	error(last_term(s)->at, hint, "more regions than the limit of %d", LIMIT_REGIONS);
 }

@@ -492,9 +492,11 @@ static void check_number(const struct constraints *all)
 	enum { HELD = 64, IMPACTS = 32 };
 	const struct model_contacts *contacts = &all->w->step->model->contacts;
 	if (all->own > HELD)
-		error(place_of(all, HELD), NULL, "beside a series more than the limit of %d frictions and contacts", HELD);
+		error(place_of(all, HELD), NULL, "beside a series more than the limit of %d frictions and contacts",
+		      HELD);
 	if (contacts->impacts > IMPACTS)
-		error(contacts->impact[IMPACTS].when->at, NULL, "beside a series more than the limit of %d impacts", IMPACTS);
+		error(contacts->impact[IMPACTS].when->at, NULL, "beside a series more than the limit of %d impacts",
+		      IMPACTS);
 }
 
 void hold_contacts(struct sequencing *w)
