@@ -11,7 +11,7 @@ CHECK_PACKAGES = $(DEMO_PACKAGES) g++ clang lld tcc libcmocka-dev valgrind \
 	python3-wheel mypy octave octave-dev octave-control libopenmpi-dev openmpi-bin cmake cppcheck
 
 .PHONY: all setup deps demo-deps check-deps demo tests check quick check-merge check-long check-firefox faults bench \
-	charts charts-quick charts-twice charts-page chart gallery firmware-report bare install clean
+	charts charts-quick charts-twice charts-page chart gallery playground firmware-report bare install clean
 
 all: setup
 	ninja -C $(BUILD) plgen plrun libplrt.a
@@ -128,6 +128,12 @@ chart: demo-deps
 	$(call configure,test -f $(BUILD)/build.ninja)
 	@ninja -C $(BUILD) plgen >/dev/null
 	@sh bench/charts/own/own.sh $(BUILD)/plgen "$(SPEC)" charts/own "$(UNTIL)" "$(EVERY)"
+
+# $(BUILD)/playground.html, the generator in a page (doc/page.md); its libraries take ten minutes, once
+playground: all
+	sh share/page/playground.sh $(BUILD)
+	if command -v node && command -v chromium; then \
+		node tests/page/page.js playground $(BUILD)/playground.html $(BUILD)/plgen models; fi
 
 # The pictures of doc/gallery.md, by plrun; with clang and wasm-ld also $(BUILD)/pages/index.html, models that run
 gallery: all

@@ -203,12 +203,13 @@ class Page {
 
 /* ---- the start ---- */
 
-/* The page's first script has `inflated`: what stands in the page compressed. */
+/* The page's first script has `inflated`: what stands in the page compressed. In the playground a page has no code. */
 async function open() {
   const model = JSON.parse(document.getElementById("model").textContent);
   try {
-    const {instance} = await WebAssembly.instantiate(await inflated("wasm"));
-    window.page = new Page(model, new Engine(model, instance.exports));
+    const here = document.getElementById("wasm").textContent;
+    const run = here ? (await WebAssembly.instantiate(await inflated("wasm"))).instance.exports : window.parent.model;
+    window.page = new Page(model, new Engine(model, run));
   } catch (error) {
     document.body.append(element("p", {role: "alert", className: "wrong", textContent: "The model does not run in this "
       + "browser: " + error.message}));

@@ -13,11 +13,13 @@
  *                                                  network; then each line of its log
  *     node page.js bits PAGE...                    whether the browser's numbers have the bits of node's
  *     node page.js firefox PAGE...                 the same of Firefox
+ *     node page.js playground PAGE PLGEN FOLDER    whether the generator in PAGE writes of each model of FOLDER what
+ *                                                  PLGEN does, and runs it with the bits of its page; then in a browser
  *     node page.js frames PAGE                     name, kB, processor time [ms] and garbage [kB] of a frame of 1000
  *                                                  steps; what went wrong
  */
 "use strict";
-const fs = require("fs"), os = require("os"), path = require("path"), {spawn} = require("child_process");
+const fs = require("fs"), os = require("os"), path = require("path"), {spawn, spawnSync} = require("child_process");
 const {gunzipSync} = require("zlib"), net = require("net");
 const {createHash} = require("crypto");
 
@@ -331,6 +333,46 @@ async function firefox(files) {
   return good;
 }
 
+/* In node; then, with the frame that the model runs in and a mistake, in a browser without a network */
+async function playground(file, plgen, folder) {
+  const script = {exports: {}}, sum = eval(sumOfBits), html = fs.readFileSync(file, "utf8");
+  const page = path.join(fs.mkdtempSync(path.join(os.tmpdir(), "page.")), "page.html");
+  new Function("module", compressed(html, "script").toString())(script);
+  const wasm = new WebAssembly.Module(compressed(html, "plgen"));
+  const files = JSON.parse(html.match(/id="models">([^]*?)<\/script>/)[1]), said = {};
+  const native = (...words) => spawnSync(plgen, words, {cwd: folder, encoding: "utf8"});
+  let good = true;
+  const judge = (holds, what) => { console.log((holds ? "" : "not ") + what); good = good && holds; };
+  for (const name of fs.readdirSync(folder).filter((name) => name.endsWith(".spec"))) {
+    const all = {...files, [name]: fs.readFileSync(path.join(folder, name), "utf8")}, run = [];
+    const code = native(name), here = new script.exports.Generator(wasm, all);
+    here.run(name);
+    judge(code.stdout === here.text(1) && code.stderr === here.text(2) && code.stdout, name + ": the C of plgen");
+    native("--page", page, name);
+    const there = new script.exports.Generator(wasm, all), own = parts(page);
+    there.run("--page", "page.html", name);
+    run.push(sum(await engineOf(own), 500), sum(new own.script.Engine(own.model, there.model), 500));
+    said[name] = run[1];
+    judge(run[0] === run[1], name + ": " + run[1] + ", of its page " + run[0]);
+  }
+  const browser = new Browser(), inside = "document.getElementById('shown').contentWindow.page";
+  await browser.open(1400);
+  await browser.visit(file);
+  for (let turn = 0; turn < 600 && await browser.value(inside + " ? " + inside + ".engine.count > 20 : false") !== true;
+    turn++) await new Promise((resolve) => setTimeout(resolve, 50));
+  const shown = await browser.value(inside + ".run(false), (" + sumOfBits + ")(" + inside + ".engine, 500)");
+  judge(shown === said["two_masses.spec"], "in a browser " + shown);
+  const place = await browser.value("spec.value = 'model x\\ncoord x\\nx\\'\\' + y = 0\\nstep 1\\n', playground.run(), "
+    + "[said.textContent.split('\\n')[0], spec.selectionStart, "
+    + "document.querySelectorAll('#lines .wrong').length].join()");
+  judge(/:3:7: error: .*,22,1$/.test(place), "a mistake: " + place);
+  browser.log.forEach((entry) => judge(false, entry));
+  if (process.env.PICTURE)
+    fs.writeFileSync(process.env.PICTURE, Buffer.from((await browser.send("Page.captureScreenshot")).data, "base64"));
+  await browser.close();
+  return good;
+}
+
 function policy(file) {
   const html = fs.readFileSync(file, "utf8"), found = (pattern) => html.match(pattern)[1];
   const sum = (text) => "'sha256-" + createHash("sha256").update(text).digest("base64") + "'";
@@ -350,5 +392,6 @@ else if (command === "samples") samples(rest[0], Number(rest[1]), rest[2]);
 else if (command === "browse") browse(...rest);
 else if (command === "bits") bits(rest).then((good) => process.exit(good ? 0 : 1));
 else if (command === "firefox") firefox(rest).then((good) => process.exit(good ? 0 : 1));
+else if (command === "playground") playground(...rest).then((good) => process.exit(good ? 0 : 1));
 else if (command === "frames") frames(rest[0]);
 else console.log(parts(rest[0]).model.title + "\n" + parts(rest[0]).model.spec);
