@@ -153,6 +153,10 @@ void emit_series_loop_tables(const struct emitter *e)
 		row[i] = l->row[i < states ? i : x->column[i - states]];
 	say(e, "\n/* The rows of the table of coefficients that are kept */\n");
 	emit_integers(e, "short", "kept_row", states + x->columns, row);
+	for (int i = 0; i < states + x->columns; i++)
+		row[i] = i < states ? x->order : x->column_top[i - states];
+	say(e, "\n/* As far as this coefficient; those behind it would bound the step for what nobody reads */\n");
+	emit_integers(e, "short", "kept_top", states + x->columns, row);
 	for (int i = 0; i < x->count; i++) {
 		const struct linear_equations *q = listed_at(x, i);
 		if (q)
@@ -179,7 +183,8 @@ void emit_series_loop(const struct emitter *e, const struct recurrences *r)
 	print_series(e, r, false);
 	say(e, "    for (k_by_0 = 0; k_by_0 <= %d; k_by_0++) {\n"
 	       "        for (i_by_0 = 0; i_by_0 < %d; i_by_0++) {\n"
-	       "            c[k_by_0][i_by_0] = table_by_0[$n_kept_row[i_by_0]][k_by_0];\n"
+	       "            c[k_by_0][i_by_0] = k_by_0 <= $n_kept_top[i_by_0]\n"
+	       "                                ? table_by_0[$n_kept_row[i_by_0]][k_by_0] : 0;\n"
 	       "        }\n"
 	       "    }\n", x->order, e->system->states + x->columns);
 }
