@@ -425,13 +425,14 @@ static void print_header(struct work *w)
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
 static void rewrite(struct work *w, struct file *f)
 {
-	if (w->options.bundle || w->options.fmu.path || w->options.target || algorithms_use(f->text, w->model->name))
-		file_rewrite(f, w->model->name, print_included);
+	const char *name = w->model->delays ? w->model->delays->name : w->model->name;
+	if (w->options.bundle || w->options.fmu.path || w->options.target || algorithms_use(f->text, name))
+		file_rewrite(f, name, print_included);
 	if (w->options.request.own_math)
-		file_rewrite(f, w->model->name, print_own_functions);
+		file_rewrite(f, name, print_own_functions);
 	if (w->options.request.single)
-		file_rewrite(f, w->model->name, print_single);
-	file_rewrite(f, w->model->name, print_apart);
+		file_rewrite(f, name, print_single);
+	file_rewrite(f, name, print_apart);
 }
 
 static void rewrite_code(struct work *w)

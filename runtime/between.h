@@ -14,7 +14,7 @@
 #define PL_LEAST_PART ((real)1e-9) /* of a step: none shorter is tried because of slopes */
 
 typedef struct PL(piece) { /* a part of a step */
-    const PL_TYPE *s;
+    const struct PL_TYPE *s;
     real *y, *low;         /* the state, and what rounding took from it, `done` after the start of the step [h] */
     real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_ROOM(PL_TERMS)]; /* the series from there */
     real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];

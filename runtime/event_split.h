@@ -48,7 +48,7 @@
 #endif
 
 typedef struct PL(piece) { /* a part of a step */
-    const PL_TYPE *s;
+    const struct PL_TYPE *s;
     PL(contact) *contact;         /* whose intervals hold */
     real met;                     /* known: what a step over all of h meets is found already, there */
     int known;

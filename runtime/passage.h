@@ -73,7 +73,7 @@ static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 #if PL_CONTACTS
 
 typedef struct PL(meeting) { /* where the next internal step starts */
-    PL_TYPE *s;
+    struct PL_TYPE *s;
     const real *start, *slope;
     real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_EVENT_ORDER)];
     pl_instant at;

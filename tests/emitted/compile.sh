@@ -503,6 +503,14 @@ for name in $names; do
     fi
 done
 
+# In C++ members have a scope of their own; around a model with delays stands another.
+always=yes
+as_model y >model.spec
+"$plgen" --batch model.spec >collide.c 2>log && all_compile collide.c 'model y, in batches'
+printf "model s\ninput u\ncoord x\nx'' + 4*x = u(t - 0.05)\nstep 0.01\n" >model.spec
+"$plgen" model.spec >collide.c 2>log && all_compile collide.c 'model s, of an input as it was'
+always=
+
 # The same name for everything, and functions of the model as names inside it.
 for name in x same; do
     printf "model %s\nparam %s_time = 2, %s_get = 3\ncoord %s, %s_out, %s_step\ninit %s = 1\n" $name $name $name $name \

@@ -103,7 +103,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 		       "$n_batch_use; NULL: all have those of shared */\n");
 	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
 	       "NULL: not kept */\n"
-	       "    $n shared;        /* %s */\n"
+	       "    struct $n shared;       /* %s */\n"
 	       "} $n_instances;\n",
 	    alone ? "a copy of the first"
 		  : format("what all share: time%s%s; its states are not used",
