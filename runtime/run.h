@@ -68,7 +68,7 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
             PL(block)(&now, out);
 #endif
 #if PL_FLUSHES > 0
-            if ((now.k & 63) < PL_ROWS) {
+            if ((now.k & 63u) < PL_ROWS) {
                 PL(flush)(&now);
             }
 #endif

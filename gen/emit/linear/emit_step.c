@@ -176,7 +176,7 @@ void emit_step_advance(const struct emitter *e)
 		say(e, "    if (++s->since == %d) { $n_refresh_phasors(s); }\n",
 		    e->step->refresh->steps);
 	if (e->step->linear.flush)
-		say(e, "    if ((s->k & 63) == 0) { $n_flush(s); }\n");
+		say(e, "    if ((s->k & 63u) == 0u) { $n_flush(s); }\n");
 }
 
 const char *checks_of_step(const struct emitter *e)
