@@ -203,6 +203,7 @@ void *object_open(const char *file);                    /* a shared object; NULL
 FILE *file_in(const char *folder, const char *name, const char *mode);
 FILE *table_open(const char *folder, const char *name, const char *head);
 void table_close(FILE *csv, const char *name);
+double value_of(const char *fraction);                  /* 1/128, 0.01 */
 void put_quoted(FILE *out, const char *text);           /* NULL: nothing, within quotes */
 /* A cell and its comma: the number, or where it is not finite the word */
 void put_number(FILE *out, const char *format, double x, const char *word);

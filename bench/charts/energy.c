@@ -7,10 +7,9 @@
  *     resting    free_pair with v2 = -0.5: the same, where the momentum is 0
  *     damped     sdcs with c = 1e-6: how fast the energy of each mode falls, beside -2 Re(pole)
  *
- * VARIANTS/energy.list has a line for each piece of generated code: `case TAB method TAB real TAB h TAB file`; file is
- * a shared object of variant.sh, or what it was refused with is in FILE.refused.  The method `problem` gives the
- * equations (and is ours no further): the peers are measured on each of them that is `double`, a matrix exponential
- * rounded to float on each that is `float`. */
+ * The peers are measured on the equations of each that is `double`, a matrix exponential rounded to float on each that
+ * is `float`. energy --list prints the generated code that is opened in VARIANTS, a line each: FILE SPEC options; what
+ * it was refused with is in FILE.refused (variant.sh). */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +19,23 @@
 enum { PER_DECADE = 5, STATES = 4 };    /* every case has two coordinates */
 
 struct code { const char *test, *method, *real, *file; double h; };
+
+#define DAMPED "models/sdcs.spec -D c1=1e-6 -D c2=1e-6 -D c3=1e-6"
+#define PAIR "bench/charts/specs/free_pair.spec"
+static const struct test { const char *name, *real, *h, *spec; } tests[] = {
+	{"undamped", "double", "0.01", "models/scs.spec"}, {"moving", "double", "0.01", PAIR " -D v2=0"},
+	{"resting", "double", "0.01", PAIR}, {"undamped", "float", "0.01", "models/scs.spec"},
+	{"moving", "float", "0.01", PAIR " -D v2=0"}, {"resting", "float", "0.01", PAIR},
+	{"undamped", "float", "0.0001", "models/scs.spec"}, {"damped", "double", "0.0001", DAMPED},
+	{"damped", "float", "0.0001", DAMPED},
+};
+/* The equations, the form that plgen chooses, then every form */
+static const struct { const char *name, *options; } forms[] = {
+	{NULL, ""}, {"", ""}, {", direct", " --form direct"}, {", delta", " --form delta"},
+	{", kick-drift-kick", " --form kick-drift-kick"}, {", compensated", " --accuracy compensated"},
+};
+enum { TESTS = sizeof tests / sizeof *tests, FORMS = sizeof forms / sizeof *forms };
+
 
 /* ---- what must stay ---- */
 
@@ -136,38 +152,51 @@ static void measure_peers(const struct problem *p, const struct code *v, double 
 static void measure_ours(const struct problem *p, const struct code *v, double steps, FILE *changes, FILE *decays)
 {
 	const struct method ours = { v->method, OURS, false, true, 0, "", NULL };
-	struct run *run = p ? generated_open(&ours, p, v->file) : NULL;
-	if (!run)
-		leave(v->file, p ? "cannot be opened" : "no problem before it");
+	char *refusal = variant_refused(v->file);
+	struct run *run = refusal ? NULL : generated_open(&ours, p, v->file);
+	if (refusal)
+		enter_refusal(v, refusal, changes, decays);
+	else if (!run)
+		leave(v->file, "cannot be opened");
 	measure(run, v, steps, changes, decays);
+	free(refusal);
+}
+
+static void list(void)
+{
+	for (int i = 0; i < TESTS; i++)
+		for (int k = 0; k < FORMS; k++)
+			printf("energy%d_%d.so %s%s%s --step %s\n", i, k, tests[i].spec, forms[k].options,
+			       k > 0 && strcmp(tests[i].real, "float") == 0 ? " --real float" : "", tests[i].h);
 }
 
 int main(int argc, char **argv)
 {
-	const bool quick = flags_of(argc, &argv, "--quick", 2, 2, "energy [--quick] VARIANTS FOLDER");
-	const double steps = quick ? 1e6 : 1e8;
-	char line[2048], *field[5];
-	FILE *list = file_in(argv[0], "energy.list", "r");
+	const unsigned flags = flags_of(argc, &argv, "--quick --list", 0, 2,
+	                                "energy [--quick] VARIANTS FOLDER\n       energy --list");
+	const double steps = flags & 1 ? 1e6 : 1e8;
+	if (flags & 2) {
+		list();
+		return 0;
+	}
 	FILE *changes = table_open(argv[1], "energy_raw.csv",
 		"case,method,family,real,step_s,steps,change,largest,word");
 	FILE *decays = table_open(argv[1], "decay.csv", "method,family,real,step_s,steps,mode_rad_per_s,rate_per_s,"
 	                          "measured_per_s,error_percent,word");
-	struct problem *p = NULL;               /* the latest given */
-	while (fgets(line, sizeof line, list)) {
-		split_line("energy", line, 5, field);
-		const struct code v = { field[0], field[1], field[2], field[4], atof(field[3]) };
-		char *refusal = variant_refused(v.file);
-		if (refusal) {
-			enter_refusal(&v, refusal, changes, decays);
-		} else if (strcmp(v.method, "problem") == 0) {
-			p = problem_load(v.file, "energy", v.h, (int)steps, true, 0);
-			measure_peers(p, &v, steps, changes, decays);
-		} else {
+	for (int i = 0; i < TESTS; i++) {
+		const struct test *of = &tests[i];
+		char file[4096], method[64];
+		struct code v = { of->name, method, of->real, file, atof(of->h) };
+		snprintf(file, sizeof file, "%s/energy%d_0.so", argv[0], i);
+		struct problem *p = problem_load(file, "energy", v.h, (int)steps, true, 0);
+		measure_peers(p, &v, steps, changes, decays);
+		for (int k = 1; k < FORMS; k++) {
+			snprintf(file, sizeof file, "%s/energy%d_%d.so", argv[0], i, k);
+			snprintf(method, sizeof method, "exact%s%s",
+			         strcmp(of->real, "float") == 0 ? ", float" : "", forms[k].name);
 			measure_ours(p, &v, steps, changes, decays);
 		}
-		free(refusal);
 	}
-	fclose(list);
 	table_close(changes, "energy_raw.csv");
 	table_close(decays, "decay.csv");
 	return 0;

@@ -12,8 +12,8 @@
  *     linear only   it is for linear models
  *     as exact      there is no remainder for this scheme: it is the exact step
  *
- * VARIANTS/hard.list has a line for each piece of generated code: `case TAB method TAB step TAB file`, file a shared
- * object of variant.sh, or `-` for what is as exact. The method `problem` comes first in each case and gives the
+ * hard --list prints the generated code that it opens in VARIANTS, a line each: FILE SPEC options; with CHARTS_PROBLEMS
+ * in the environment that of the cases'
  * equations. Steps are powers of two except in van der Pol's case, so that a double holds them and time itself is no
  * error. What is true: e^{A t} in quadruple precision (truth.c), or the closed forms below; for van der Pol truth_of.
  *
@@ -67,6 +67,7 @@ static void graze(quad t, quad *y)
 
 /* ---- the cases ---- */
 
+#define SPECS "bench/charts/specs/"
 static const struct hard_case {
 	const char *name;
 	double unit;                            /* [s] */
@@ -77,30 +78,52 @@ static const struct hard_case {
 	void (*exact)(quad t, quad *y);
 	/* scale of velocities where ends of units have no larger: van der Pol's jump, 4/3 mu, falls between them */
 	double least_v;
-	double steps[3];                        /* to take, 0 at the end */
+	const char *steps[3], *spec;            /* to take, NULL at the end; with options */
 	long most_evaluations;
 } cases[] = {
-	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 133, { 0.1, 0.01 }, 5000000 },
-	{ "stiff spring", 0.125, 800, 80, 0, true, NULL, 0, { 0.125, 1.0 / 128 }, 20000000 },
-	{ "resonance", 0.125, 8000, 800, 10, true, NULL, 0, { 1.0 / 128 }, 5000000 },
-	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, NULL, 0, { 1.0 / 128 }, 5000000 },
-	{ "equal poles", 0.125, 8000, 800, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
-	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, poles_apart, 0, { 1.0 / 128 }, 5000000 },
-	{ "critical damping", 0.125, 80, 80, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
-	{ "rigid body", 0.125, 8000, 800, 0, true, NULL, 0, { 1.0 / 128 }, 5000000 },
-	{ "long run", 1, 9766, 98, 0, true, NULL, 0, { 1.0 / 1024 }, 200000000 },
-	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, { 1.0 / 128 }, 5000000 },
-	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, NULL, 1e-3, { 1024 }, 5000000 },
-	{ "the same, long step", 1048576, 8, 8, 0, true, NULL, 1e-3, { 1048576 }, 5000000 },
+	{ "stiff van der Pol", 0.1, 1000, 1000, 0, false, NULL, 133, { "0.1", "0.01" },
+	  "models/vanderpol_stiff.spec", 5000000 },
+	{ "stiff spring", 0.125, 800, 80, 0, true, NULL, 0, { "1/8", "1/128" }, SPECS "stiff_spring.spec", 20000000 },
+	{ "resonance", 0.125, 8000, 800, 10, true, NULL, 0, { "1/128" }, SPECS "resonance.spec", 5000000 },
+	{ "resonance, 1e-9 off", 0.125, 8000, 800, 10 + 1e-9, true, NULL, 0, { "1/128" },
+	  SPECS "resonance.spec -D off=1e-9", 5000000 },
+	{ "equal poles", 0.125, 8000, 800, 0, true, NULL, 0, { "1/128" }, SPECS "confluent.spec", 5000000 },
+	{ "poles 1e-10 apart", 0.125, 8000, 800, 0, true, poles_apart, 0, { "1/128" },
+	  SPECS "confluent.spec -D w2=10.0000000001", 5000000 },
+	{ "critical damping", 0.125, 80, 80, 0, true, NULL, 0, { "1/128" }, SPECS "critical.spec", 5000000 },
+	{ "rigid body", 0.125, 8000, 800, 0, true, NULL, 0, { "1/128" }, SPECS "rigid.spec", 5000000 },
+	{ "long run", 1, 9766, 98, 0, true, NULL, 0, { "1/1024" }, "models/scs.spec", 200000000 },
+	{ "grazing contact", 0.125, 800, 800, 0, false, graze, 0, { "1/128" }, SPECS "graze.spec", 5000000 },
+	{ "poles -1e8 and -1e-3", 1024, 8, 8, 0, true, NULL, 1e-3, { "1024" }, SPECS "fast_slow.spec", 5000000 },
+	{ "the same, long step", 1048576, 8, 8, 0, true, NULL, 1e-3, { "1048576" }, SPECS "fast_slow.spec", 5000000 },
 };
 static const double tolerance = 1e-10;          /* of adaptive methods */
 
-static const struct hard_case *case_find(const char *name)
+enum { CASES = sizeof cases / sizeof *cases };
+/* The equations, which are ours no further, then what is tried of them at each step */
+static const struct { const char *name, *options; bool of_remainder; } ours[] = {
+	{ "problem", "", false }, { "exact", "--scheme exact", false },
+	{ "exact, compensated", "--scheme exact --accuracy compensated", false },
+	{ "exact, float", "--scheme exact --real float", false }, { "pl", "--scheme pl", false },
+	{ "etd1", "--scheme etd1", true }, { "etdrk2", "--scheme etdrk2", true }, { "etdrk4", "--scheme etdrk4", true },
+	{ "bm3", "--scheme bm3", true },
+};
+enum { OURS_COUNT = sizeof ours / sizeof *ours };
+
+/* NULL: there is no remainder for it */
+static const char *file_of(const struct hard_case *c, int step, int k)
 {
-	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
-		if (strcmp(cases[k].name, name) == 0)
-			return &cases[k];
-	leave(name, "no case of hard is called that");
+	return c->linear && ours[k].of_remainder ? NULL : text("hard%d_%d_%d.so", (int)(c - cases), step, k);
+}
+
+static void list(bool problems)
+{
+	for (const struct hard_case *c = cases; c < cases + CASES; c++)
+		for (int i = 0; c->steps[i]; i++)
+			for (int k = i > 0; k < (problems ? 1 : OURS_COUNT); k++)
+				if (file_of(c, i, k))
+					printf("%s %s %s --step %s\n", file_of(c, i, k), c->spec, ours[k].options,
+					       c->steps[i]);
 }
 
 /* What is true at the ends of units; and the problem's scales, which are the history's */
@@ -206,9 +229,10 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,
                      const struct method *m)
 {
-	const double once[] = { tolerance, 0 };
-	for (const double *setting = m->tolerance ? once : c->steps; *setting > 0; setting++)
-		print_cell(out, c, m, *setting, try_method(m, p, t, *setting, NULL, c->most_evaluations), m->settings);
+	for (int i = 0; c->steps[i] && !(m->tolerance && i > 0); i++) {
+		const double setting = m->tolerance ? tolerance : value_of(c->steps[i]);
+		print_cell(out, c, m, setting, try_method(m, p, t, setting, NULL, c->most_evaluations), m->settings);
+	}
 }
 
 static void try_peers(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t)
@@ -221,14 +245,17 @@ static void try_peers(FILE *out, const struct hard_case *c, const struct problem
 	try_peer(out, c, p, t, residues_naive);
 }
 
-static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,
-                     const char *name, double step, const char *file)
+static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t, int i, int k,
+                     const char *variants)
 {
-	const struct method m = { .name = name, .family = OURS };
-	if (strcmp(file, "-") == 0) {
+	const struct method m = { .name = ours[k].name, .family = OURS };
+	const double step = value_of(c->steps[i]);
+	if (!file_of(c, i, k)) {
 		print_cell(out, c, &m, step, (struct cell){ NAN, "as exact" }, "");
 		return;
 	}
+	char file[4096];
+	snprintf(file, sizeof file, "%s/%s", variants, file_of(c, i, k));
 	char *refusal = variant_refused(file);
 	const struct cell cell = refusal ? (struct cell){ NAN, "refused" } : try_method(&m, p, t, step, file,
 		c->most_evaluations);
@@ -244,30 +271,28 @@ static struct problem *problem_of(const struct hard_case *c, const char *file, b
 
 int main(int argc, char **argv)
 {
-	const unsigned flags = flags_of(argc, &argv, "--quick --scales", 1, 2, "hard [--quick] VARIANTS FOLDER\n"
-	                                "       hard --scales [--quick] VARIANTS");
+	const unsigned flags = flags_of(argc, &argv, "--quick --scales --list", 0, 2, "hard [--quick] VARIANTS FOLDER\n"
+	                                "       hard --scales [--quick] VARIANTS\n       hard --list");
 	const bool quick = flags & 1, scales = flags & 2;
-	char line[2048], *field[4];             /* case, method, step, file */
-	gsl_set_error_handler_off();            /* its statuses say it too */
-	FILE *list = file_in(argv[0], "hard.list", "r"), *out = scales ? stdout : table_open(argv[1], "hard_raw.csv",
-		"case,method,family,setting_kind,setting,error,word,settings");
-	struct problem *p = NULL;
-	struct truth *t = NULL;
-	while (fgets(line, sizeof line, list)) {
-		split_line("hard", line, 4, field);
-		const struct hard_case *c = case_find(field[0]);
-		if (strcmp(field[1], "problem") == 0) {
-			p = problem_of(c, field[3], quick);
-			t = history_of(c, p);
-			if (scales)
-				put_scales(out, p, c->name, field[3]);
-			else
-				try_peers(out, c, p, t);
-		} else if (p && !scales) {
-			try_ours(out, c, p, t, field[1], atof(field[2]), field[3]);
-		}
+	if (flags & 4) {
+		list(getenv("CHARTS_PROBLEMS") != NULL);
+		return 0;
 	}
-	fclose(list);
+	gsl_set_error_handler_off();            /* its statuses say it too */
+	FILE *out = scales ? stdout : table_open(argv[1], "hard_raw.csv",
+		"case,method,family,setting_kind,setting,error,word,settings");
+	for (const struct hard_case *c = cases; c < cases + CASES; c++) {
+		struct problem *p = problem_of(c, text("%s/%s", argv[0], file_of(c, 0, 0)), quick);
+		struct truth *t = history_of(c, p);
+		if (scales) {
+			put_scales(out, p, c->name, text("%s/%s", argv[0], file_of(c, 0, 0)));
+			continue;
+		}
+		try_peers(out, c, p, t);
+		for (int i = 0; c->steps[i]; i++)
+			for (int k = 1; k < OURS_COUNT; k++)
+				try_ours(out, c, p, t, i, k, argv[0]);
+	}
 	table_close(out, "hard_raw.csv");
 	return 0;
 }

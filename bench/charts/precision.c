@@ -205,12 +205,6 @@ static const struct charted *model_named(const char *name)
 	leave(name, "no model");
 }
 
-static double value_of(const char *fraction)
-{
-	const char *bar = strchr(fraction, '/');
-	return bar ? atof(fraction) / atof(bar + 1) : atof(fraction);
-}
-
 /* ---- the list ---- */
 
 /* scs, exact, delta, 4: scs-exact-delta-4.so; pendulum, taylor, 3e-2: pendulum-taylor-3e-2.so */

@@ -91,6 +91,12 @@ void table_close(FILE *csv, const char *name)
 	}
 }
 
+double value_of(const char *fraction)
+{
+	const char *bar = strchr(fraction, '/');
+	return bar ? atof(fraction) / atof(bar + 1) : atof(fraction);
+}
+
 void put_quoted(FILE *out, const char *text)
 {
 	putc('"', out);

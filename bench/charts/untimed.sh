@@ -23,7 +23,7 @@ job() {
 	case $1 in
 		errors_*) sh $charts/precision.sh "$plgen" "$programs/precision" "$folder" $quick --errors "${1#*_}" ;;
 		convergence | plmap | energy | hard | papers)
-			made "$1"
+			made "$1" "$variants" "$programs/$1"
 			"$programs/$1" $quick "$variants" "$folder" ;;
 		friction | less)
 			made "$1" "$variants" "$programs/$1"

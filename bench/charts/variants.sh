@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # variants.sh TOPIC PLGEN FOLDER [--quick] [PROGRAM]: the generated code that a topic's program opens, as shared objects
 # in FOLDER (variant.sh). A topic has lines in variants.list, or is a function below that prints one for each, FILE SPEC
-# [plgen options], with a list of its own, FOLDER/TOPIC.list, where the program reads what is what. PROGRAM: that says
-# the lines itself. Run at the top of the source tree.
+# [plgen options]. PROGRAM: that says the lines itself. Run at the top of the source tree.
 set -e
 topic=$1 plgen=$2 folder=$3 quick=
 shift 3
@@ -39,102 +38,6 @@ expanded() {
 		END { take(kept) }' $charts/variants.list
 }
 
-# listed FIELDS FILE SPEC [plgen options]: and a line of the list, FIELDS TAB FILE
-listed() {
-	fields=$1 file=$2
-	shift
-	# without a blank at its end: xargs would go on with the next line
-	echo "$@"
-	printf '%s\t%s\n' "$fields" "$folder/$file" >>"$folder/$topic.list"
-}
-
-# kept CASE METHOD REAL H SPEC [plgen options]: of energy
-kept() {
-	of=$1 method=$2 real=$3 h=$4 spec=$5
-	shift 5
-	listed "$(printf '%s\t%s\t%s\t%s' "$of" "$method" "$real" "$h")" \
-		"$(echo "energy $of $method $h $real" | sed 's/[^a-z0-9.]\{1,\}/_/g').so" "$spec" --step "$h" "$@"
-}
-
-# forms CASE REAL H SPEC [plgen options]: the equations, then the form that plgen chooses, then every form
-forms() {
-	of=$1 real=$2 h=$3 spec=$4
-	shift 4
-	kept "$of" problem "$real" "$h" "$spec" "$@"
-	name=exact
-	if [ "$real" = float ]; then
-		set -- --real float "$@"
-		name='exact, float'
-	fi
-	kept "$of" "$name" "$real" "$h" "$spec" "$@"
-	for form in direct delta kick-drift-kick; do
-		kept "$of" "$name, $form" "$real" "$h" "$spec" --form $form "$@"
-	done
-	kept "$of" "$name, compensated" "$real" "$h" "$spec" --accuracy compensated "$@"
-}
-
-energy() {
-	for real in double float; do
-		forms undamped $real 0.01 models/scs.spec
-		forms moving $real 0.01 $specs/free_pair.spec -D v2=0
-		forms resting $real 0.01 $specs/free_pair.spec
-	done
-	forms undamped float 0.0001 models/scs.spec
-	for real in double float; do
-		forms damped $real 0.0001 models/sdcs.spec -D c1=1e-6 -D c2=1e-6 -D c3=1e-6
-	done
-}
-
-# case_of CASE METHOD STEP SPEC [plgen options]: of hard; SPEC -: there is no remainder for that scheme. With
-# CHARTS_PROBLEMS in the environment the cases alone
-case_of() {
-	of=$1 method=$2 step=$3 spec=$4
-	shift 4
-	[ -z "$CHARTS_PROBLEMS" ] || [ "$method" = problem ] || return 0
-	fields=$(printf '%s\t%s\t%s' "$of" "$method" "$(awk "BEGIN { printf \"%.17g\", $step }")")
-	if [ "$spec" = - ]; then
-		printf '%s\t-\n' "$fields" >>"$folder/hard.list"
-	else
-		listed "$fields" "$(echo "hard $of $method $step" | sed 's/[^a-zA-Z0-9.-]\{1,\}/_/g').so" "$spec" \
-			--step "$step" "$@"
-	fi
-}
-
-# tried KIND CASE 'STEPS' SPEC [plgen options]
-tried() {
-	kind=$1 of=$2 steps=$3 from=$4
-	shift 4
-	case_of "$of" problem "${steps%% *}" "$from" "$@"
-	for at in $steps; do
-		case_of "$of" exact "$at" "$from" --scheme exact "$@"
-		case_of "$of" 'exact, compensated' "$at" "$from" --scheme exact --accuracy compensated "$@"
-		case_of "$of" 'exact, float' "$at" "$from" --scheme exact --real float "$@"
-		case_of "$of" pl "$at" "$from" --scheme pl "$@"
-		for scheme in etd1 etdrk2 etdrk4 bm3; do
-			if [ "$kind" = linear ]; then
-				case_of "$of" $scheme "$at" -
-			else
-				case_of "$of" $scheme "$at" "$from" --scheme $scheme "$@"
-			fi
-		done
-	done
-}
-
-hard() {
-	tried other 'stiff van der Pol' '0.1 0.01' models/vanderpol_stiff.spec
-	tried linear 'stiff spring' '1/8 1/128' $specs/stiff_spring.spec
-	tried linear resonance 1/128 $specs/resonance.spec
-	tried linear 'resonance, 1e-9 off' 1/128 $specs/resonance.spec -D off=1e-9
-	tried linear 'equal poles' 1/128 $specs/confluent.spec
-	tried linear 'poles 1e-10 apart' 1/128 $specs/confluent.spec -D w2=10.0000000001
-	tried linear 'critical damping' 1/128 $specs/critical.spec
-	tried linear 'rigid body' 1/128 $specs/rigid.spec
-	tried linear 'long run' 1/1024 models/scs.spec
-	tried other 'grazing contact' 1/128 $specs/graze.spec
-	tried linear 'poles -1e8 and -1e-3' 1024 $specs/fast_slow.spec
-	tried linear 'the same, long step' 1048576 $specs/fast_slow.spec
-}
-
 # Its specs, and what plgen counts for a step of each: NAME.cost
 less() {
 	"$program" --specs "$folder"
@@ -162,10 +65,9 @@ papers() {
 }
 
 program=${1:-}
-: >"$folder/$topic.list"
 case $topic in
-	headline) "$program" --list ;;
-	energy | hard | less | papers) $topic ;;
+	energy | hard | headline) "$program" --list ;;
+	less | papers) $topic ;;
 	*) expanded "$topic" ;;
 esac >"$folder/$topic.jobs"
 case $topic in

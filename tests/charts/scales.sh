@@ -20,7 +20,7 @@ mkdir "$work/hard"
 # Lines of two fields: the models themselves
 "$charts/precision" --list | awk -v to="$work/" 'NF == 2 { print to $1, $2 }' |
     xargs -P "${JOBS:-2}" -L 1 bench/charts/variant.sh "$build/plgen"
-CHARTS_PROBLEMS=1 sh bench/charts/variants.sh hard "$build/plgen" "$work/hard"
+CHARTS_PROBLEMS=1 sh bench/charts/variants.sh hard "$build/plgen" "$work/hard" "$charts/hard"
 names=
 expected=25
 [ -z "$quick" ] || { names=$("$charts/precision" --names | grep -v '^vanderpol_stiffer$') expected=24; }
