@@ -313,11 +313,27 @@ static int look_at_top(const beyond *f, point a, point *z, int *splits)
     return UNKNOWN;
 }
 
+/* f with bounds of its derivatives up to `to`: where it begins flat they are far smaller */
+static beyond up_to(const beyond *f, real to)
+{
+    beyond part = *f;
+    int k;
+    part.fourth = part.fifth = 0;
+    for (k = f->degree; k >= 4; k--) {
+        const real fourths = (real)(k * (k - 1) * (k - 2) * (k - 3)) * magnitude(f->coefficient[k]);
+        part.fourth = part.fourth * to + fourths;
+        part.fifth = k > 4 ? part.fifth * to + (real)(k - 4) * fourths : part.fifth;
+    }
+    return part;
+}
+
 /* Where g first rises through 0 before `end`, or -1.  Walks from the left, by intervals that are halved until it is
  * known what g does in them, and doubled again after that. */
 static real first_root(const beyond *f, real end, int *splits)
 {
+    enum { FEW = 16 };
     const real shortest = SHORT; /* what g does in less is below its noise */
+    const int looks = *splits;
     real width = end;
     int first = 1;
     point a, inside; /* inside: the last point where g < 0, so that what noise hides loses no time */
@@ -332,7 +348,8 @@ static real first_root(const beyond *f, real end, int *splits)
     inside = a;
     for (; a.s < end && (first || has_look(splits)); first = 0) {
         point z = point_of(f, a.s + width < end ? a.s + width : end);
-        int known = between(f, a, z);
+        const beyond part = looks - *splits > FEW ? up_to(f, z.s) : *f;
+        int known = between(&part, a, z);
         if (known == BENDS) {
             known = look_at_top(f, a, &z, splits);
         }

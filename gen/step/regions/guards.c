@@ -319,6 +319,8 @@ int most_in_step(const struct model *model)
 
 int max_splits(const struct model *model)
 {
+	enum { MANY = 8 };              /* so many switching functions, each of which is looked at after each event */
+	const int functions = model->switching ? model->switching->functions : 0;
 	return model->most_events ? LOOKS_OF_STEP + LOOKS_OF_EVENT * model->most_events
-				  : MAX_SPLITS + 32 * bounces_in_step(model);
+				  : MAX_SPLITS * (functions > MANY ? functions / 2 : 1) + 32 * bounces_in_step(model);
 }
