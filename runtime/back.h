@@ -4,7 +4,9 @@
  * each is what the step computed forwards.  The state before a step is that of a snapshot, or steps from one.  Included
  * by derivatives.h, which has the macros, and of these
  *
- *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state
+ *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state, and PL(move_d) a step of
+ *                                derivatives alone
+ *     PL_BY_ROWS                 1: that of outputs is the same all along.  PL_DECLARED  0: outputs are the states
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
  *
  * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
@@ -14,11 +16,15 @@ typedef struct PL(back_work) {
     PL_TYPE after, seeded;
     PL(d) alone, ds; /* of the step without seeds; with them */
     real J[PL_OUTPUTS][PL_DERIVATIVES], seed[PL_OUTPUTS][PL_DERIVATIVES], lam[PL_STATES];
+#if PL_BY_ROWS
+    real row[PL_OUTPUTS][PL_STATES];
+#endif
 #if PL_PEAKS > 0
     real peak[PL_PEAKS]; /* what peaks are worth, until the step in which each has risen to what it is */
 #endif
 } PL(back_work);
 
+#if PL_DECLARED || !PL_BY_PHI
 static real PL(d_size)(const real *value, int count, int apart)
 {
     real most = 1;
@@ -39,6 +45,7 @@ static void PL(seed)(PL(d) *ds, int first, const real *scale)
         ds->s[p][first + p] = scale[p];
     }
 }
+#endif
 
 /* 0 of peaks, which follow no state */
 static real PL(worth)(const real *w, int o)
@@ -53,12 +60,21 @@ static real PL(worth)(const real *w, int o)
     return worth;
 }
 
-/* lam += (derivative of outputs by the state)^T w; work->J is what they have without a state's */
-static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES])
+#if PL_DECLARED
+/* What outputs have without a derivative of a state */
+static void PL(outputs_alone)(PL(back_work) *b)
 {
+    b->ds = b->alone;
+    PL(set_d)(&b->ds, NULL);
+    PL(out_d)(&b->after, &b->ds, b->J);
+}
+
+/* row += w^T (derivative of outputs by the state), of output `only`, or of all */
+static void PL(rows_back)(PL(back_work) *b, const real *w, int only, real row[PL_STATES])
+{
+    const int from = only < 0 ? 0 : only, to = only < 0 ? PL_OUTPUTS : only + 1;
     real scale[PL_DERIVATIVES];
     int first, i, p;
-    b->ds = b->alone;
     for (p = 0; p < PL_DERIVATIVES; p++) {
         scale[p] = PL(d_size)(&b->J[0][p], PL_OUTPUTS, PL_DERIVATIVES);
     }
@@ -66,11 +82,33 @@ static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES
         PL(seed)(&b->ds, first, scale);
         PL(out_d)(&b->after, &b->ds, b->seed);
         for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
-            for (i = 0; i < PL_OUTPUTS; i++) {
-                lam[first + p] += PL(worth)(w, i) * ((b->seed[i][p] - b->J[i][p]) / scale[p]);
+            for (i = from; i < to; i++) {
+                row[first + p] += (w ? PL(worth)(w, i) : 1) * ((b->seed[i][p] - b->J[i][p]) / scale[p]);
             }
         }
     }
+}
+#endif
+
+/* lam += (derivative of outputs by the state)^T w */
+static void PL(outputs_back)(PL(back_work) *b, const real *w, real lam[PL_STATES])
+{
+#if PL_BY_ROWS
+    int i, j;
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        for (j = 0; j < PL_STATES; j++) {
+            lam[j] += w[i] * b->row[i][j];
+        }
+    }
+#elif PL_DECLARED
+    PL(rows_back)(b, w, -1, lam);
+#else
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        lam[i] += w[i];
+    }
+    (void)b;
+#endif
 }
 
 /* lam: by the state after the step, made that by the state before it */
@@ -84,7 +122,9 @@ static void PL(state_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real lam
 #endif
     for (j = 0; j < PL_STATES; j++) {
         b->lam[j] = 0;
-        for (i = 0; i < PL_STATES; i++) {
+    }
+    for (i = 0; i < PL_STATES; i++) {
+        for (j = 0; j < PL_STATES; j++) {
             b->lam[j] += PL(Phi)[i][j] * lam[i];
         }
     }
@@ -143,7 +183,7 @@ static real PL(column_back)(const PL(back_work) *b, int p, const real *w, const 
     for (i = 0; i < PL_STATES; i++) {
         sum += lam[i] * b->alone.s[p][i];
     }
-    for (i = 0; i < PL_OUTPUTS && w != NULL; i++) {
+    for (i = 0; i < PL_OUTPUTS && PL_DECLARED && w != NULL; i++) {
         sum += PL(worth)(w, i) * b->J[i][p];
     }
 #if PL_PEAKS > 0
@@ -155,10 +195,9 @@ static real PL(column_back)(const PL(back_work) *b, int p, const real *w, const 
 }
 
 /* A step from s without derivatives of its state, of the columns along inputs with these at its start and end; then
- * what outputs have of them behind it */
-static void PL(alone)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real before, real now)
+ * what outputs have of them behind it, where these are worth something */
+static void PL(alone)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real before, real now, const real *w)
 {
-    PL(d) ds;
 #if PL_SEEDED
     real du[PL_INPUTS];
     int i;
@@ -170,12 +209,22 @@ static void PL(alone)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real before, 
     (void)before;
     (void)now;
 #endif
-    b->after = *s;
     PL(set_d)(&b->alone, NULL);
+#if PL_BY_PHI
+    if (w == NULL || !PL_DECLARED) {
+        PL(move_d)(s, &b->alone PL_TAKES PL_ALONG);
+        return;
+    }
+#endif
+    b->after = *s;
     PL(step_d)(&b->after, &b->alone PL_TAKES PL_ALONG);
-    ds = b->alone;
-    PL(set_d)(&ds, NULL);
-    PL(out_d)(&b->after, &ds, b->J);
+#if PL_DECLARED
+    if (w != NULL) {
+        PL(outputs_alone)(b);
+    }
+#else
+    (void)w;
+#endif
 }
 
 static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real *w, real lam[PL_STATES],
@@ -186,8 +235,12 @@ static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real
                          )
 {
     real sum;
-    int p;
-    PL(alone)(s, b PL_TAKES, 0, 1);
+    int p, some = 0;
+    for (p = 0; p < PL_OUTPUTS && w != NULL; p++) {
+        some |= w[p] < 0 || !(w[p] <= 0);
+    }
+    w = some ? w : NULL;
+    PL(alone)(s, b PL_TAKES, 0, 1, w);
     if (w != NULL) {
         PL(outputs_back)(b, w, lam);
 #if PL_PEAKS > 0
@@ -206,7 +259,7 @@ static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real
 #endif
     }
 #if PL_SLOPED
-    PL(alone)(s, b PL_TAKES, 1, 0);
+    PL(alone)(s, b PL_TAKES, 1, 0, w);
     for (p = 0; p < PL_DERIVATIVES; p++) {
         sum = PL(d_input)[p] >= 0 ? PL(column_back)(b, p, w, lam) : 0;
         pb[p] += sum;
@@ -227,13 +280,26 @@ static void PL(row_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, const real
 
 static void PL(begin_back)(PL(back_work) *b)
 {
-#if PL_PEAKS > 0
-    int p;
-    for (p = 0; p < PL_PEAKS; p++) {
-        b->peak[p] = 0;
-    }
+#if PL_PEAKS > 0 || PL_BY_ROWS
+    int i;
 #endif
     PL(init_d)(&b->after, &b->alone);
+    b->ds = b->alone;
+#if PL_PEAKS > 0
+    for (i = 0; i < PL_PEAKS; i++) {
+        b->peak[i] = 0;
+    }
+#endif
+#if PL_BY_ROWS
+    PL(outputs_alone)(b);
+    for (i = 0; i < PL_OUTPUTS; i++) {
+        int j;
+        for (j = 0; j < PL_STATES; j++) {
+            b->row[i][j] = 0;
+        }
+        PL(rows_back)(b, NULL, i, b->row[i]);
+    }
+#endif
 }
 
 void PL(back)(const PL_TYPE *s PL_GIVES, const real *w, real lam[PL_STATES], real pb[PL_DERIVATIVES]
@@ -335,9 +401,11 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
 #endif
                      );
-        pl_doubt_join(&ds->doubt, &b.alone.doubt, 0);
-        pl_doubt_join(&ds->doubt, &b.ds.doubt, 0);
-        ds->status = ds->doubt.status;
+        if (b.alone.doubt.status || b.ds.doubt.status) {
+            pl_doubt_join(&ds->doubt, &b.alone.doubt, 0);
+            pl_doubt_join(&ds->doubt, &b.ds.doubt, 0);
+            ds->status = ds->doubt.status;
+        }
         top -= at[top] == row && top > 0;
     }
 #if PL_SLOPED

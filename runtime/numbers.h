@@ -77,6 +77,12 @@
 #ifndef PL_SLOPED
 #define PL_SLOPED 0
 #endif
+#ifndef PL_DECLARED
+#define PL_DECLARED 0
+#endif
+#ifndef PL_BY_ROWS
+#define PL_BY_ROWS 0
+#endif
 #ifndef PL_BY_PHI
 #define PL_BY_PHI 0
 #endif

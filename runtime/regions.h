@@ -210,6 +210,24 @@ static void vary_part(const searched *m, const instant *at, real tau, const real
     }
 }
 
+/* S over an event-free step, x beginning at at->x.  0: its tables are not there */
+static int vary_step(const searched *m, const instant *at)
+{
+    const pl_variation *v = at->v;
+    const int n = m->size;
+    const real *Phi = matrix_of(m->Phi, m, at->c->matrix), *over = v->over;
+    int p, i;
+    for (p = 0; p < v->columns && over != NULL; p++) {
+        real *S = v->S + (ptrdiff_t)p * n;
+        pl_multiply(n, n, Phi, S, v->work);
+        pl_multiply_add(n, n, over + ((ptrdiff_t)p * v->matrices + at->c->matrix) * n * n, at->x, v->work);
+        for (i = 0; i < n; i++) {
+            S[i] = v->work[i];
+        }
+    }
+    return over != NULL;
+}
+
 /* S over a piece of this length from x on, before x is moved */
 static void vary_piece(const searched *m, instant *at, real length)
 {
@@ -230,6 +248,9 @@ static void vary_piece(const searched *m, instant *at, real length)
     for (i = 0; i < n; i++) {
         z[i] = at->x[i];
         v->scale[i] = larger(v->scale[i], magnitude(z[i]));
+    }
+    if (length >= m->h && vary_step(m, at)) {
+        return;
     }
     for (part = 0; part < parts && length > 0; part++) {
         expand(n, v->degree, matrix_now(m, at), length / (real)parts, z, series);

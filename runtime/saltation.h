@@ -54,6 +54,7 @@ typedef struct pl_variation {
     int columns, matrices, degree; /* degree: of Taylor polynomials */
     const int *first;
     const pl_varied *entry;
+    const PL_REAL *over;           /* derivatives of e^{A h}, of each column those of each matrix; or NULL */
     PL_REAL *S;                    /* columns + 1, the last one for work */
     PL_REAL *scale;                /* the largest size of each entry of x so far */
     PL_REAL *when, *dg;            /* columns each, for work */

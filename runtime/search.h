@@ -27,7 +27,7 @@
  *                                bit i where x_i is never above 1
  *     PL_FEW                     crossings by few.h, which is included then; 0: none
  *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of
- *                                pl_variation, and PL(varied_first), PL(varied) its tables */
+ *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables */
 #include "numbers.h"
 
 /* ---- what the search goes by ---- */
@@ -453,6 +453,7 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
     v.degree = PL_DEGREE_D;
     v.first = PL(varied_first);
     v.entry = PL(varied);
+    v.over = PL_VARIED_STEP;
     v.segment = v.pending = v.sticks = v.upward = 0;
     v.function = v.last = -1;
     v.doubt.status = 0;

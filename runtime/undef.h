@@ -91,6 +91,7 @@
 #undef PL_OUT_ALONE
 #undef PL_SCALED
 #undef PL_SEEDED
+#undef PL_BY_ROWS
 #undef PL_BY_PHI
 #undef PL_JAC
 #undef PL_TAKES
@@ -321,6 +322,7 @@
 #undef PL_VALUES
 #undef PL_VALUE
 #undef PL_VECTOR
+#undef PL_VARIED_STEP
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WAY

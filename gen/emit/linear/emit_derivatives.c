@@ -396,6 +396,19 @@ static void emit_steps_beside(const struct emitter *e)
 	close_function(e, "");
 }
 
+/* Of derivatives alone */
+static void emit_move(const struct emitter *e)
+{
+	open_function(e, NULL, "static void $n_move_d(const $n *s, $n_d *ds%s)", input_parameters(e));
+	if (e->step->derivatives->varied)
+		say(e, "    $n_vary_all(s, ds%s, $N_H);\n", input_arguments(e));
+	else
+		emit_state_now(e);
+	for (int b = 0; b < e->step->derivatives->blocks; b++)
+		say(e, "    $n_step_d%d(s, y, ds%s);\n", b, input_arguments(e));
+	close_function(e, "");
+}
+
 static void emit_step_of_all(const struct emitter *e)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -403,13 +416,9 @@ static void emit_step_of_all(const struct emitter *e)
 		emit_steps_beside(e);
 		return;
 	}
+	emit_move(e);
 	open_step(e);
-	if (!d->varied)
-		emit_state_now(e);
-	for (int b = 0; b < d->blocks; b++)
-		say(e, "    $n_step_d%d(s, y, ds%s);\n", b, input_arguments(e));
-	if (d->varied)
-		say(e, "    $n_vary_all(s, ds%s, $N_H);\n", input_arguments(e));
+	say(e, "    $n_move_d(s, ds%s);\n", input_arguments(e));
 	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
 	emit_keep_seeds(e);
 	close_function(e, "");
@@ -529,16 +538,26 @@ static void emit_inputs_of_columns(const struct emitter *e)
 		emit_int_list(e, "d_input", d->columns, input);
 }
 
+/* Is what outputs have of the state the same all along? */
+static bool has_steady_outputs(const struct emitter *e)
+{
+	bool steady = e->model->declared_outputs && e->model->system.segments == 1;
+	for (int i = 0; i < e->model->outputs; i++)
+		steady = steady && !e->model->output[i].left;
+	return steady;
+}
+
 static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 {
 	const struct derivatives *d = e->step->derivatives;
-	const bool around = is_around_core(e);
+	const bool around = is_around_core(e), by_phi = !around && is_linear_alone(e->step) && !e->step->is.tuned &&
+							!e->step->shown->no.phi && !has_peaks(e);
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states },
 		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "BY_PHI", !around && is_linear_alone(e->step) && !e->step->is.tuned && !e->step->shown->no.phi &&
-			     !has_peaks(e) },
+		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e) },
+		   { "DECLARED", e->model->declared_outputs },
 		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
 		   { "SEGMENTS", row ? e->model->system.segments : 1 },
 		   { "PEAKS", peak_outputs(e->model) }, { "AROUND", around },

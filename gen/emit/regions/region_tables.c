@@ -400,6 +400,19 @@ void put_entries(const struct emitter *e, const char *name, const struct variati
 	close_table(e);
 }
 
+static void emit_varied_steps(const struct emitter *e, const double *over)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	const int branches = e->step->branches, rows = d->columns * branches, size = e->step->layout.size;
+	const char **note = ARRAY(const char *, (size_t)rows);
+	for (int i = 0; i < rows; i++)
+		note[i] = format("%s, %d", d->column[i / branches].name, i % branches);
+	open_table(e, "double", "varied_step", format("[%d][%d]", rows, size * size),
+		   "Derivatives of e^{A h}: of each column those of each linear system");
+	emit_number_rows(e, rows, size * size, over, note);
+	close_table(e);
+}
+
 void emit_variation(const struct emitter *e, const struct guards *g)
 {
 	if (!has_variation(e))
@@ -410,6 +423,9 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 		   "linear system, switching functions, breakpoints, guards, assignments, times of changes",
 		   v.blocks + 1, v.first);
 	put_entries(e, "varied", &v);
+	if (v.over)
+		emit_varied_steps(e, v.over);
+	say_macro(e, "VARIED_STEP", v.over ? spell(e, "$o_varied_step[0]") : "NULL");
 }
 
 void emit_variation_macros(const struct emitter *e)

@@ -89,6 +89,7 @@ struct variation {                  /* as pl_variation has it: of all columns th
 	int blocks, *first;
 	int entries;
 	struct varied_entry *entry;
+	double *over;               /* derivatives of e^{A h}: of each column those of each matrix; or NULL */
 };
 /* of each of step->derivatives, of a model that goes by regions; leaves the statement */
 struct varied_model *varied_models(const struct step *step, const struct model *model);

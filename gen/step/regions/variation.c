@@ -112,18 +112,26 @@ static bool is_below(mpq_srcptr number, mpq_srcptr size)
 	return mpq_sgn(sum) > 0 && mpq_cmp(number, size) < 0;
 }
 
-double varied_number(const struct varied_model *v, mpq_srcptr more, mpq_srcptr less)
+static bool find_change(const struct varied_model *v, mpq_srcptr more, mpq_srcptr less, mpq_ptr change)
 {
-	RATIONAL change = ZERO, size = ZERO;
+	RATIONAL size = ZERO;
+	mpq_set_ui(change, 0, 1);
 	if (mpq_equal(more, less))
-		return 0;
+		return false;
 	mpq_sub(change, more, less);
 	mpq_abs(size, more);
 	mpq_div_2exp(size, size, APART + LOST);
 	if (mpq_sgn(more) != 0 && mpq_sgn(less) != 0 && is_below(change, size))
-		return 0;
-	mpq_div(change, change, v->apart);
-	return round_rational(change);
+		mpq_set_ui(change, 0, 1);
+	else
+		mpq_div(change, change, v->apart);
+	return mpq_sgn(change) != 0;
+}
+
+double varied_number(const struct varied_model *v, mpq_srcptr more, mpq_srcptr less)
+{
+	RATIONAL change = ZERO;
+	return find_change(v, more, less, change) ? round_rational(change) : 0;
 }
 
 /* ---- a part's tables ---- */
@@ -218,6 +226,51 @@ static void add_changes(struct reader *r, const struct model *more, const struct
 	end_block(r->to);
 }
 
+/* Of e^{A h}, size x size (Van Loan 1978): it stands in the lower rows of that of [A, 0; A_p, A].  false: unknown */
+static bool add_step(struct reader *r, const struct listing *own, int branch, double *over)
+{
+	const int n = own->x->size, from = place_of(own, RETUNED_SYSTEM, branch, 0) * n,
+		  more = place_of(&r->more, RETUNED_SYSTEM, branch, 0) * n,
+		  less = place_of(&r->less, RETUNED_SYSTEM, branch, 0) * n;
+	mpq_t *Z = rationals((size_t)(4 * n * n));
+	INTERVAL value = OVER_BITS(320);
+	bool any = false;
+	for (int i = 0; i < n * n; i++) {
+		const int cell = i / n * 2 * n + i % n;
+		mpq_set(Z[cell], own->entry[from + i]);
+		mpq_set(Z[cell + 2 * n * n + n], own->entry[from + i]);
+		any |= find_change(r->v, r->more.entry[more + i], r->less.entry[less + i], Z[cell + 2 * n * n]);
+	}
+	struct taylor *t = any ? taylor_of(2 * n, Z, own->model->h) : NULL;
+	if (any && !taylor_enclose(t, 256))
+		return false;
+	for (int i = 0; i < n * n && any; i++) {
+		taylor_entry(t, n + i / n, i % n, value);
+		over[i] = mpfi_get_d(value);
+	}
+	return true;
+}
+
+/* Tables of all columns and matrices, unless they would be large; rows of a matrix stand one after the other */
+static double *steps_of(const struct step *step, int part)
+{
+	const struct derivatives *d = step->shown->derivatives;
+	const int cells = step->layout.size * step->layout.size;
+	const struct listing own = listing_of(step, step->model);
+	if (d->columns * step->branches > LIMIT_TUNED_NUMBERS / cells)
+		return NULL;
+	double *over = ARRAY(double, (size_t)(d->columns * step->branches * cells)), *to = over;
+	for (int p = 0; p < d->columns; p++) {
+		const struct varied_model *v = &d->varied[p];
+		struct reader r = { v, listing_of(step, part_of(v->more, part)),
+				    listing_of(step, part_of(v->less, part)), NULL };
+		for (int k = 0; k < step->branches; k++, to += cells)
+			if (!add_step(&r, &own, k, to))
+				return NULL;
+	}
+	return over;
+}
+
 struct variation variation_of(const struct step *step, int part, const struct guards *g)
 {
 	const struct derivatives *d = step->shown->derivatives;
@@ -236,6 +289,7 @@ struct variation variation_of(const struct step *step, int part, const struct gu
 		add_guards(&r, s, g);
 		add_changes(&r, v->more, v->less);
 	}
+	to.over = steps_of(step, part);
 	return to;
 }
 
