@@ -15,8 +15,6 @@
 #include "lagrange.h"
 #include "model/contacts/friction.h"
 
-#include <math.h>
-
 struct sweep {
 	struct building *b;
 	bool rates;                 /* stop at them: of T */
@@ -179,34 +177,6 @@ static struct sweep sweep_back(struct building *b, const struct form *form, cons
 
 /* ---- the energies ---- */
 
-/* Whether the value is at least 0 in all states: positive factors of even powers, and what is positive by itself */
-static bool is_never_negative(const struct form *form);
-
-static bool is_never_negative_atom(const struct atom *a)
-{
-	static const double lowest[] = {
-#define REAL_FUNCTION(NAME, name, argument, value, low, high) [FN_##NAME] = low,
-#include "read/functions.def"
-#undef REAL_FUNCTION
-		[FN_ATAN2] = -1
-	};
-	bool all = a->kind == ATOM_PRODUCT || a->kind == ATOM_RECIPROCAL;
-	for (int i = 0; all && i < a->operands; i++)
-		all = (a->exponent && a->exponent[i] % 2 == 0) || is_never_negative(a->operand[i]);
-	return all || (a->kind == ATOM_CALL && a->function < FN_ATAN2 && lowest[a->function] >= 0);
-}
-
-static bool is_never_negative(const struct form *form)
-{
-	bool all = true;
-	for (int i = 0; all && i < form->terms; i++) {
-		const struct basis *basis = &form->term[i].basis;
-		all = mpq_sgn(form->term[i].factor) > 0 &&
-		      (basis->kind == BASIS_ONE || (basis->atom && is_never_negative_atom(basis->atom)));
-	}
-	return all;
-}
-
 static void add_kinetic(struct building *b, const struct form *T, struct form **force)
 {
 	RATIONAL minus = RATIO(-1, 1);
@@ -314,7 +284,7 @@ static void add_energy(struct building *b, const struct energy *energy, struct s
 		const struct form **total = &s->energy[energy->kind == 'V'];
 		*total = *total ? form_sum(*total, form, false) : form;
 	}
-	s->negative_kinetic = s->negative_kinetic || (energy->kind == 'T' && !is_never_negative(form));
+	s->negative_kinetic = s->negative_kinetic || (energy->kind == 'T' && !never_falls_below(form));
 	if (energy->kind == 'T')
 		add_kinetic(b, form, force);
 	else if (energy->kind == 'G')

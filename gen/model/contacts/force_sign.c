@@ -1,20 +1,29 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The sign of a friction force F, as far as it is seen: F is at 0 or above as long as a sum of powers, exponentials and
- * forcing terms of time is, beside what never is below 0. */
+/* The sign of a friction force or an energy, as far as it is seen: it is at 0 or above as long as a sum of powers,
+ * exponentials and forcing terms of time is, beside what never is below 0. */
 #include "friction.h"
 
-/* max(5*y + 1, 0), abs(x), x^2, t < 1 ? 1 : 2 */
+#include <math.h>
+
+/* max(5*y + 1, 0), abs(x), x^2, x^2/cosh(y), t < 1 ? 1 : 2 */
 static bool is_never_negative(const struct atom *a)
 {
+	static const double lowest[] = {
+#define REAL_FUNCTION(NAME, name, argument, value, low, high) [FN_##NAME] = low,
+#include "read/functions.def"
+#undef REAL_FUNCTION
+		[FN_ATAN2] = -1
+	};
 	if (a->kind == ATOM_CHOOSE)
 		return never_falls_below(a->operand[1]) && never_falls_below(a->operand[2]);
-	bool never = a->kind == ATOM_CALL && (a->function == FN_ABS || a->function == FN_EXP || a->function == FN_SQRT);
+	bool never = a->kind == ATOM_CALL &&
+		     (a->function == FN_ABS || (a->function < FN_ATAN2 && lowest[a->function] >= 0));
 	for (int i = 0; i < a->operands && a->kind == ATOM_CALL && a->function == FN_MAX; i++)
 		never = never || (is_constant(a->operand[i]) && never_falls_below(a->operand[i]));
-	if (a->kind == ATOM_PRODUCT) {
+	if (a->kind == ATOM_PRODUCT || a->kind == ATOM_RECIPROCAL) {
 		never = true;
-		for (int i = 0; i < a->operands; i++)
-			never = never && a->exponent[i] % 2 == 0;
+		for (int i = 0; i < a->operands && never; i++)
+			never = (a->exponent && a->exponent[i] % 2 == 0) || never_falls_below(a->operand[i]);
 	}
 	return never;
 }
