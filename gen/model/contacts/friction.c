@@ -590,13 +590,3 @@ void build_friction(struct building *b, struct switching *s)
 	}
 	build_friction_forces(b, s);
 }
-
-bool same_friction(const struct region *a, const struct region *b)
-{
-	bool same = a->holds == b->holds && a->releases == b->releases;
-	for (int k = 0; k < a->holds && same; k++)
-		same = a->hold[k].state == b->hold[k].state && same_form(a->hold[k].form, b->hold[k].form);
-	for (int k = 0; k < a->releases && same; k++)
-		same = same_form(a->release[k].form, b->release[k].form);
-	return same;
-}

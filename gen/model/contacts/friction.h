@@ -36,7 +36,6 @@ struct holding {                    /* states of a region that follow from the o
 	struct region *region;
 	struct basis *of;
 };
-bool same_friction(const struct region *a, const struct region *b); /* what sticks is held and released alike */
 
 /* ---- slider.c: friction of what has no mass ---- */
 

@@ -3,6 +3,17 @@
 #include "inner.h"
 #include "model/contacts/friction.h"
 
+/* What sticks is held and released alike. */
+static bool same_friction(const struct region *a, const struct region *b)
+{
+	bool same = a->holds == b->holds && a->releases == b->releases;
+	for (int k = 0; k < a->holds && same; k++)
+		same = a->hold[k].state == b->hold[k].state && same_form(a->hold[k].form, b->hold[k].form);
+	for (int k = 0; k < a->releases && same; k++)
+		same = same_form(a->release[k].form, b->release[k].form);
+	return same;
+}
+
 /* Whether all regions below it have the equations of those above it */
 static bool changes_nothing(const struct switching *s, int function, int at)
 {
