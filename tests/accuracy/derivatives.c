@@ -5,7 +5,8 @@
  *     derivatives judge SEED <NUMBERS   what its C computes, against e^{A h} with each param a little more and less
  *
  * Compiled with -DMODEL=NAME it is the other side, and prints NUMBERS: constants, which a step leaves in the
- * derivatives from a state of one 1 and derivatives of 0, and derivatives after STEPS steps. */
+ * derivatives from a state of one 1 and derivatives of 0, and derivatives after STEPS steps; or after as many steps as
+ * its argument says statuses, outputs and what these have. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,10 +22,30 @@ enum { STEPS = 200 };
 extern const pl_model NAMED(MODEL, _model);
 extern const pl_derivatives NAMED(MODEL, _derivatives);
 
-int main(void)
+static void print_end(const pl_model *m, const pl_derivatives *d, int steps)
+{
+	void *s = malloc(m->size), *ds = malloc(d->size);
+	double *y = calloc((size_t)m->outputs, sizeof *y), *J = calloc((size_t)(m->outputs * d->columns), sizeof *J);
+	d->init(s, ds);
+	for (int k = 0; k < steps; k++)
+		d->step(s, ds, NULL, NULL);
+	m->out(s, y);
+	d->out(s, ds, J);
+	printf("%u %d\n", d->status(ds), m->status(s));
+	for (int i = 0; i < m->outputs; i++) {
+		printf("%.17g", y[i]);
+		for (int p = 0; p < d->columns; p++)
+			printf(" %.17g", J[i * d->columns + p]);
+		printf("\n");
+	}
+}
+
+int main(int argc, char **argv)
 {
 	const pl_model *m = &NAMED(MODEL, _model);
 	const pl_derivatives *d = &NAMED(MODEL, _derivatives);
+	if (argc > 1)
+		return print_end(m, d, atoi(argv[1])), 0;
 	void *s = malloc(m->size), *alone = malloc(m->size), *ds = malloc(d->size);
 	double *y = calloc((size_t)m->states, sizeof *y), *J = calloc((size_t)(m->states * d->columns), sizeof *J);
 	double *plain = calloc((size_t)m->states, sizeof *plain);

@@ -492,11 +492,12 @@ struck=$root/tests/accuracy/events_judge.c
 # judged_events KIND SEED: what its C computes, and what the judge says of it; 77: impacts without an end
 judged_events() {
 	./struck "$1" "$2" >e.spec && "$PLGEN" --prefix r e.spec >r.c 2>said &&
-		$run_cc -I"$root/runtime" r.c drive.o "$archive" -lm -o r >>said 2>&1 && ./r >numbers || return 1
+		$run_cc -I"$root/runtime" r.c drive.o "$archive" -lm -o r >>said 2>&1 && ./r 150 >numbers || return 1
 	[ "$1" = graze ] || ./struck judge "$2" <numbers
 }
 
-if $run_cc -O2 "$struck" -o struck 2>log && $run_cc -DMODEL=r -I"$root/runtime" -c "$struck" -o drive.o 2>>log; then
+if $run_cc -O2 "$struck" -o struck 2>log &&
+	$run_cc -DMODEL=r -I"$root/runtime" -c "${struck%/*}/derivatives.c" -o drive.o 2>>log; then
 	most=20 grazing=10 seed=0 reported=0 endless=0
 	[ "$seeds" -gt 16 ] && most=500 grazing=100
 	while [ "$seed" -lt "$most" ]; do

@@ -6,44 +6,13 @@
  *     events_judge graze SEED            one whose stop is just reached
  *     events_judge judge SEED <NUMBERS   what its C computes
  *
- * Compiled with -DMODEL=NAME it is the other side, and prints NUMBERS: the status of derivatives, then those. */
+ * NUMBERS are what derivatives.c prints after 150 steps. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 enum { END = 150 };                     /* steps of 1/50 */
-
-#ifdef MODEL
-
-#include "plrt.h"
-#define JOINED(a, b) a##b
-#define NAMED(a, b) JOINED(a, b)
-extern const pl_model NAMED(MODEL, _model);
-extern const pl_derivatives NAMED(MODEL, _derivatives);
-
-int main(void)
-{
-	const pl_model *m = &NAMED(MODEL, _model);
-	const pl_derivatives *d = &NAMED(MODEL, _derivatives);
-	void *s = malloc(m->size), *ds = malloc(d->size);
-	double *y = calloc((size_t)m->outputs, sizeof *y), *J = calloc((size_t)(m->outputs * d->columns), sizeof *J);
-	d->init(s, ds);
-	for (int k = 0; k < END; k++)
-		d->step(s, ds, NULL, NULL);
-	m->out(s, y);
-	d->out(s, ds, J);
-	printf("%u %d\n", d->status(ds), m->status(s));
-	for (int i = 0; i < m->outputs; i++) {
-		printf("%.17g", y[i]);
-		for (int p = 0; p < d->columns; p++)
-			printf(" %.17g", J[i * d->columns + p]);
-		printf("\n");
-	}
-	return 0;
-}
-
-#else
 
 typedef __float128 real;
 
@@ -473,5 +442,3 @@ int main(int argc, char **argv)
 	}
 	return argc == 3 && strcmp(argv[1], "judge") == 0 ? judge(seed) : 2;
 }
-
-#endif
