@@ -83,10 +83,8 @@ static int region_of(const struct regions *r, const double *y)
 static bool find_regions(const struct problem *p, struct regions *r)
 {
 	static struct hand_system s;
-	void (*make)(struct hand_system *s) = p->rhs_of ? NULL : gears_of(p->name);
-	if (!make)
+	if (p->rhs_of || !gears_of(p->name, &s))
 		return false;
-	make(&s);
 	fill(r, &s);
 	return true;
 }

@@ -4,9 +4,11 @@
 #ifndef GEARS_H
 #define GEARS_H
 
+#include <stdbool.h>
+
 #include "../../tests/switching/hand.h"
 
-/* What fills in the system of that name; NULL: it is none of them */
-void (*gears_of(const char *name))(struct hand_system *);
+/* false: it is none of them; s may be NULL */
+bool gears_of(const char *name, struct hand_system *s);
 
 #endif

@@ -285,13 +285,13 @@ static void extrapolated(const struct problem *p, const struct equations *e, str
 
 /* ---- clearances: Taylor series between crossings, in long double ---- */
 
-static void between_crossings(const struct problem *p, void (*make)(struct hand_system *s), struct truth *t)
+static void between_crossings(const struct problem *p, struct truth *t)
 {
 	const int size = 2 * p->n;
 	const real unit = (real)exactly(p->unit);
 	struct hand_system s;
 	struct hand_state now;
-	make(&s);
+	gears_of(p->name, &s);
 	hand_start(&s, &now);
 	for (int k = 0; k < p->units; k++) {
 		hand_reference(&s, &now, (k + (real)TRUTH_BETWEEN) * unit);
@@ -405,9 +405,9 @@ static void solve(struct problem *p, struct truth *t)
 		t->agreement = extrapolation_difference(p, t);
 		return;
 	}
-	if (gears_of(p->name)) {
+	if (gears_of(p->name, NULL)) {
 		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
-		between_crossings(p, gears_of(p->name), t);
+		between_crossings(p, t);
 	} else if (quad_taylor_has(p)) {
 		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd";
 		quad_taylor(p, t);
@@ -417,7 +417,7 @@ static void solve(struct problem *p, struct truth *t)
 		extrapolated(p, e, t);
 	}
 	truth_scales(p, t);
-	t->agreement = solver_difference(p, t, gears_of(p->name) ? 0 : e->parts);
+	t->agreement = solver_difference(p, t, gears_of(p->name, NULL) ? 0 : e->parts);
 	if (strcmp(p->name, "pendulum") == 0) {
 		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
 		t->agreement = fmax(t->agreement, elliptic_difference(p, t));
