@@ -1,16 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mechanisms.sh BUILD [MODEL...]: what a second of motion of mechanisms costs at errors of 1e-6, 1e-9 and 1e-12 of the
-# last state: instructions by valgrind's callgrind, of plgen's taylor, DOP853 and RADAU5 of the kept charts. Peers have
-# the best right-hand side that is known: NAME_rhs, which factors M by L D L^T; of chains a recursion over the links.
-# MODEL: a number of links, or the name of a file of models/
+# last state, relative to the larger of its value and 1: instructions by valgrind's callgrind, of plgen's taylor, DOP853
+# and RADAU5 of the kept charts, and IDA. Peers have the best right-hand side that is known: NAME_rhs, which factors M by
+# L D L^T, and solves for multipliers; of chains a recursion over the links.
+# MODEL: a number of links, or the name of a file of models/; andrews: 0.03 s of it
 set -e
 build=$1
 shift
-[ $# -gt 0 ] || set -- cart_pole 1 2 3 5 10
+[ $# -gt 0 ] || set -- cart_pole 1 2 3 5 10 slider_crank andrews
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-every=0.1 units=10
+units=10
 
 # A chain of point masses: the forces in its links are a tridiagonal system
 cat >"$work/recursion.h" <<'EOT'
@@ -62,7 +63,13 @@ points() {
 
 echo "thousands of instructions a second of motion at 1e-6, 1e-9, 1e-12, gcc -O2"
 for model; do
+	every=0.1
 	case $model in
+		andrews)
+			every=0.003
+			awk '/^===/ { on = $2 == "andrews" } /^---/ { on = 0 } on && !/^(===|tolerance|output)/' \
+				tests/mechanisms/mechanisms.cases >"$work/m.spec"
+			;;
 		[0-9]*)
 			first=$(seq -s '; ' 1 0.1 "$(awk -v n="$model" 'BEGIN { print 1 + (n - 1)/10 }')")
 			sed -e "s/q\[10\]/q[$model]/; s/^init.*/init q = [$first]/; /^output/d" models/chain.spec \
@@ -77,12 +84,6 @@ for model; do
 		sed 's/^void subject_rhs(/INLINE void rhs_double(/' >"$work/rhs_double.h"
 	case $model in [0-9]*) cp "$work/recursion.h" "$work/rhs_double.h" ;; esac
 	: >"$work/rhs_long.h"
-	start=$(sed -n 's/^init \(q\|th\) = \[*\([^]]*\)]*.*/\2/p' "$work/m.spec" | tr ';' ,)
-	[ "$model" != cart_pole ] || start=0,$start
-	# shellcheck disable=SC2086
-	gcc -std=gnu11 -O2 -w -fcx-limited-range -Iruntime -Ibench/charts/own -I"$work" -DSTATES="$states" -DINPUTS=0 \
-		-DSECOND_ORDER=1 -DEVERY=$every "-DSTART=$start" bench/mechanisms.c bench/charts/own/kept_dop853.c \
-		bench/charts/own/kept_radau.c -o "$work/peers" -lgsl -lgslcblas -lm
 	# ours TOLERANCE
 	ours() {
 		"$build/plgen" --prefix subject --step $every --tolerance "$1" --scheme taylor -o "$work/subject_pl.c" \
@@ -92,11 +93,16 @@ for model; do
 	}
 	ours 1e-15 -O0
 	"$work/ours" $units taylor >"$work/truth"
+	start=$("$work/ours" 0 taylor | tr ' ' ,)
+	gcc -std=gnu11 -O2 -w -fcx-limited-range -Iruntime -Ibench/charts/own -I"$work" -DSTATES="$states" -DINPUTS=0 \
+		-DSECOND_ORDER=1 -DEVERY=$every "-DSTART=$start" bench/mechanisms.c bench/charts/own/kept_dop853.c \
+		bench/charts/own/kept_radau.c -o "$work/peers" -lsundials_ida -lsundials_nvecserial -lgsl -lgslcblas -lm
 	# error: of the last state
 	error() {
 		echo "$state" | awk 'NR == FNR { n = split($0, a, " "); next }
 			{ split($0, b, " ")
-			  for (i = 1; i <= n; i++) { d = a[i] - b[i]; d = d < 0 ? -d : d; if (d > e) e = d }
+			  for (i = 1; i <= n; i++) { d = a[i] - b[i]; d = d < 0 ? -d : d
+			      size = a[i] < 0 ? -a[i] : a[i]; d /= size > 1 ? size : 1; if (d > e) e = d }
 			  print e + 0 }' "$work/truth" -
 	}
 	echo "$model:"
@@ -105,7 +111,7 @@ for model; do
 		count "$work/ours" $units taylor
 		echo "$(error) $count"
 	done | points "  taylor"
-	for method in dop853 radau5; do
+	for method in dop853 radau5 ida; do
 		for e in 1e-4 1e-5 1e-6 1e-7 1e-8 1e-9 1e-10 1e-11 1e-12 1e-13; do
 			count "$work/peers" $units $method $e
 			echo "$(error) $count"
