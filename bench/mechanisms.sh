@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mechanisms.sh BUILD [MODEL...]: what a second of motion of mechanisms costs at errors of 1e-6, 1e-9 and 1e-12 of the
 # last state, relative to the larger of its value and 1: instructions by valgrind's callgrind, of plgen's taylor, DOP853
-# and RADAU5 of the kept charts, and IDA. Peers have the best right-hand side that is known: NAME_rhs, which factors M by
-# L D L^T, and solves for multipliers; of chains a recursion over the links.
+# and RADAU5 of the kept charts, and IDA. Peers have the best right-hand side that is known: NAME_rhs, which factors M
+# by L D L^T, and solves for multipliers; of chains a recursion over the links.
 # MODEL: a number of links, or the name of a file of models/; andrews: 0.03 s of it
 set -e
 build=$1
