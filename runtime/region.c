@@ -126,14 +126,19 @@ static void exponential(int n, const real *A, real tau, int sizes, real *E, real
         E[i] = 0;
     }
     for (k = 1; k < TERMS + n; k++) {
-        for (i = 0; i < n; i++) {
+        for (i = 0; i < n * n; i++) {
+            next[i] = 0;
+        }
+        for (m = 0; m < n; m++) {
             for (j = 0; j < n; j++) {
-                real sum = 0;
-                for (m = 0; m < n; m++) {
-                    sum += term[i * n + m] * (sizes ? pl_magnitude(A[m * n + j]) : A[m * n + j]);
+                const real a = sizes ? pl_magnitude(A[m * n + j]) : A[m * n + j];
+                for (i = 0; i < n && (a < 0 || a > 0); i++) { /* few are not 0 */
+                    next[i * n + j] += term[i * n + m] * a;
                 }
-                next[i * n + j] = sum * tau / (real)k;
             }
+        }
+        for (i = 0; i < n * n; i++) {
+            next[i] = next[i] * tau / (real)k;
         }
         swap = term;
         term = next;
