@@ -347,10 +347,12 @@ async function playground(file, plgen, folder) {
     const all = {...files, [name]: fs.readFileSync(path.join(folder, name), "utf8")}, run = [];
     const code = native(name), here = new script.exports.Generator(wasm, all);
     here.run(name);
-    judge(code.stdout === here.text(1) && code.stderr === here.text(2) && code.stdout, name + ": the C of plgen");
-    native("--page", page, name);
-    const there = new script.exports.Generator(wasm, all), own = parts(page);
-    there.run("--page", "page.html", name);
+    judge(code.stdout === here.text(1) && code.stderr === here.text(2), name + ": what plgen writes");
+    const there = new script.exports.Generator(wasm, all), status = native("--page", page, name).status;
+    const ended = there.run("--page", "page.html", name);
+    judge(ended === status, name + ": status " + status);
+    if (status || ended) continue;
+    const own = parts(page);
     run.push(sum(await engineOf(own), 500), sum(new own.script.Engine(own.model, there.model), 500));
     said[name] = run[1];
     judge(run[0] === run[1], name + ": " + run[1] + ", of its page " + run[0]);

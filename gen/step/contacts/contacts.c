@@ -250,7 +250,8 @@ static int pull_sequence(const struct constraints *all, int index, long sign, co
 		return sum_sequence(w, &sum);
 	if (!drag || drag->rest == drag->force) {
 		sum_add(&rate, TERM_SEQUENCE, h->bare, 0, factor);
-		return hold_choice(w, &all->c->hold[index], sum_sequence(w, &sum), sum_sequence(w, &rate));
+		const int slope = sum_sequence(w, &rate);
+		return hold_choice(w, &all->c->hold[index], sum_sequence(w, &sum), slope);
 	}
 	const int held = sum_sequence(w, &sum);
 	mpq_neg(factor, factor);

@@ -389,31 +389,32 @@ static int sequence_in_three(struct sequencing *w, const struct atom *atom, int 
 	return choice(w, atom, x[0], CMP_LT, x[1], below, inner);
 }
 
-/* Of functions with kinks; NONE: of others */
+/* Of functions with kinks; NONE: of others. Sequences are numbered in the order in which they are made. */
 static int sequence_in_pieces(struct sequencing *w, const struct atom *a)
 {
 	const struct form *x = a->operand[0], *zero = form_number(0);
 	struct straight *piece;
 	RATIONAL minus = RATIO(-1, 1);
+	int between, last;
 	switch (a->function) {
 	case FN_ABS:
-		return choice(w, a, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)),
-			      sequence_of_form(w, x));
+		last = sequence_of_form(w, x);
+		return choice(w, a, x, CMP_LT, zero, sequence_of_form(w, form_scale(x, minus)), last);
 	case FN_SGN:
-		if (!is_linear_in_time(x))
-			return choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 1));
-		return choice(w, a, x, CMP_GT, zero, sequence_of_constant(w, 1),
-			      choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), sequence_of_constant(w, 0)));
+		last = sequence_of_constant(w, is_linear_in_time(x) ? 0 : 1);
+		last = choice(w, a, x, CMP_LT, zero, sequence_of_constant(w, -1), last);
+		return is_linear_in_time(x) ? choice(w, a, x, CMP_GT, zero, sequence_of_constant(w, 1), last) : last;
 	case FN_MIN:
 	case FN_MAX:
 		return a->operands > LIMIT_COMPARED ? NONE : best_from(w, a, 1, 0);
 	case FN_CLIP:
-		return sequence_in_three(w, a, sequence_of_form(w, a->operand[1]), sequence_of_form(w, x),
-					 sequence_of_form(w, a->operand[2]));
+		last = sequence_of_form(w, a->operand[2]);
+		between = sequence_of_form(w, x);
+		return sequence_in_three(w, a, sequence_of_form(w, a->operand[1]), between, last);
 	case FN_DEADZONE:
-		return sequence_in_three(w, a, sequence_of_form(w, form_difference(x, a->operand[1])),
-					 sequence_of_constant(w, 0),
-					 sequence_of_form(w, form_difference(x, a->operand[2])));
+		last = sequence_of_form(w, form_difference(x, a->operand[2]));
+		between = sequence_of_constant(w, 0);
+		return sequence_in_three(w, a, sequence_of_form(w, form_difference(x, a->operand[1])), between, last);
 	case FN_TABLE:
 		return pieces_of_atom(a, &piece) > LIMIT_STRAIGHTS ? NONE : sequence_of_table(w, a);
 	default:
@@ -561,8 +562,9 @@ static int sequence_of_atom(struct sequencing *w, const struct atom *atom)
 	case ATOM_CHOOSE:     made = sequence_of_choice(w, atom); break;
 	case ATOM_SOLUTION:   made = solution_sequence(w, atom); break;
 	default:
+		made = sequence_of_constant(w, 0);
 		made = choice(w, atom, atom->operand[0], atom->comparison, atom->operand[1],
-			      sequence_of_constant(w, 1), sequence_of_constant(w, 0));
+			      sequence_of_constant(w, 1), made);
 	}
 	return w->atom[atom->index] = made;
 }
