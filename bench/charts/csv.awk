@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reading CSV, and numbers in sentences: -f csv.awk before the program. A line into fields; quotes keep commas. Fields
-# are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false. `same`, and in the first
-# of several columns nothing, is what the row above has there.
+# are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false. `same`, and nothing in the
+# first of several columns, `family` or `setting_kind`, is what the row above has there.
 function split_row(line, field,    n, i) {
 	n = split_fields(line, field)
 	for (i = 1; i <= n; i++) {
-		if (field[i] == "same" || (i == 1 && n > 1 && field[1] == "")) field[i] = above[i]
+		if (field[i] == "same" || (field[i] == "" && n > 1 && is_left_out(i))) field[i] = above[i]
 		above[i] = field[i]
 	}
 	return n
 }
+function is_left_out(i) { return i == 1 || head[i] == "family" || head[i] == "setting_kind" }
 function split_fields(line, field,    n, text, pieces, piece, parts, part, i, j) {
 	if (index(line, "\"") == 0) {
 		n = split(line, field, ",")
@@ -30,7 +31,9 @@ function split_fields(line, field,    n, text, pieces, piece, parts, part, i, j)
 function is_number(text) { return text ~ /^[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?$/ }
 # Of a head: column["name"] is its number, head[number] its name.
 function read_head(line, column,    n, i) {
+	split("", head)
 	n = split_row(line, head)
+	split("", above)
 	for (i = 1; i <= n; i++) column[head[i]] = i
 	return n
 }

@@ -257,8 +257,8 @@ index() {
 	value of the history; they are the same to the last digit in every run. Times are medians of samples taken in
 	turns, each of them a whole history; the tables have minimum, median and maximum. A failure stands as a word, in
 	no place as a gap. Parameters of the models from the four papers are chosen, since those of the sources did not
-	survive; what is deduced and what is chosen is said in each model's file. In the .csv files the first column is
-	empty where it has what the row above has, and another says <code>same</code>.</p>
+	survive; what is deduced and what is chosen is said in each model's file. In the .csv files the first column,
+	family and setting_kind are empty where they have what the row above has, and others say <code>same</code>.</p>
 	EOT
 }
 
