@@ -64,6 +64,9 @@ static void emit_varied_step(const struct emitter *e)
 {
 	const struct layout *layout = &e->step->layout;
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
+	struct standing at = { .since = e->step->shown->refresh != NULL };      /* a part has none of its own */
+	struct emitter loads = *e;
+	loads.at = at.since ? &at : e->at;
 	for (int l = 0; l < e->system->loads; l++)
 		needed[l] = layout->load[l] >= 0;
 	open_function(e, NULL, "static void $o_vary_by(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
@@ -71,7 +74,7 @@ static void emit_varied_step(const struct emitter *e)
 	       "    const double t = $n_time(s);\n"
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
 	declare_region_vector(e);
-	emit_load_states(e, needed, true);
+	emit_load_states(&loads, needed, true);
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
 		say(e, "    $n_get(s, x);\n");
