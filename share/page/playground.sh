@@ -91,10 +91,8 @@ once gsl '$configured && make -C gsl && for part in err sys complex block vector
 	linalg eigen poly ode-initval2 utils; do make -C $part || exit; done'
 
 # A pointer that is loaded on the way to a real register goes through t0; one of the arguments may be in the other.
-# All symbols are near: the generator of this processor takes no large offsets in those of a table of addresses.
 once tcc 'sed -i "s|EI(0x03, 3, rr, br, fc); // ld RR, fc(BR)|EI(0x03, 3, is_freg(r) ? 5 : rr, br, fc);|
-	s|^            br = rr;|            br = is_freg(r) ? 5 : rr;|
-	s|if (sv->sym->type.t & VT_STATIC) {|if (1) {|" riscv64-gen.c &&
+	s|^            br = rr;|            br = is_freg(r) ? 5 : rr;|" riscv64-gen.c &&
 	grep -q "br = is_freg" riscv64-gen.c &&
 	echo "#define TCC_VERSION \"\"" >config.h
 	echo "typedef int pthread_t, pthread_attr_t;
