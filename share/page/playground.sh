@@ -91,9 +91,11 @@ once gsl '$configured && make -C gsl && for part in err sys complex block vector
 	linalg eigen poly ode-initval2 utils; do make -C $part || exit; done'
 
 # A pointer that is loaded on the way to a real register goes through t0; one of the arguments may be in the other.
+# A structure that is returned in two registers is copied first; else both get its first member.
 once tcc 'sed -i "s|EI(0x03, 3, rr, br, fc); // ld RR, fc(BR)|EI(0x03, 3, is_freg(r) ? 5 : rr, br, fc);|
 	s|^            br = rr;|            br = is_freg(r) ? 5 : rr;|" riscv64-gen.c &&
-	grep -q "br = is_freg" riscv64-gen.c &&
+	sed -i "s/&& (align & (ret_align-1))) {/) {/" tccgen.c &&
+	grep -q "br = is_freg" riscv64-gen.c && ! grep -q "align & (ret_align-1)" tccgen.c &&
 	echo "#define TCC_VERSION \"\"" >config.h
 	echo "typedef int pthread_t, pthread_attr_t;
 		int pthread_attr_init(pthread_attr_t *), pthread_join(pthread_t, void **),
