@@ -18,7 +18,7 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
             -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
             continue;
         }
-        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0) {
+        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, 0, work) > 0) {
             enter(m, c, c->region + w.stride);
         }
     }
@@ -204,12 +204,13 @@ static event first_event(const pl_guards *m, const instant *at, real *coefficien
     f.degree = m->degree;
     f.coefficient = e + terms;
     for (k = first_guard(m, region); k < last_guard(m, region); k++) {
-        const real *row = m->guards.row + (ptrdiff_t)m->guard[k].row * n, size = sizes(n, row, coefficients);
+        const real *row = m->guards.row + (ptrdiff_t)m->guard[k].row * n, moves = sizes(n, row, coefficients + n);
+        const real size = sizes(n, row, coefficients) + (m->guard[k].impact < 0 ? moves : 0);
         real s, next;
         int has_left;
         expand_row(n, terms, row, coefficients, e);
         VARIED(miss(m, at, k, e);)
-        next = m->guard[k].impact >= 0 && e[1] < 0 ? sizes(n, row, coefficients + n) : -1;
+        next = m->guard[k].impact >= 0 && e[1] < 0 ? moves : -1;
         has_left = next >= 0 && magnitude(e[0] - m->limit[k]) <= noise_of(magnitude(m->limit[k]) + size + next);
         if (!(has_left ? look_behind(&f, e, next) : look_beyond(&f, e, 1, m->limit[k], size))) {
             continue;
@@ -331,23 +332,32 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     decide_anew(m, &at, 1);
 }
 
+/* The most that rounding in a step does to the guard of any bounce.  All of them count: of balls in a row those that lie
+ * still have places and speeds of the size of rounding, which say nothing of how it came about.  at->work: the slope */
+static real rounding_of_places(const pl_guards *m, const instant *at)
+{
+    const int n = m->size;
+    real largest = 0;
+    int k;
+    pl_multiply(n, n, matrix_now(m, at), at->x, at->work);
+    for (k = 0; k < m->impacts; k++) {
+        const real *speed = m->speed + (ptrdiff_t)k * n;
+        real noise;
+        (void)depth(m, at, k, &noise);
+        noise += m->h * noise_of(sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work));
+        largest = larger(largest, noise);
+    }
+    return largest;
+}
+
 /* What is beyond the guard of a bounce by more than rounding is reported. */
 static void check_places(const pl_guards *m, const instant *at)
 {
-    const int n = m->size;
     int k;
     for (k = 0; k < m->impacts; k++) {
-        const real *speed = m->speed + (ptrdiff_t)k * n;
-        real noise, e;
-        if (!is_before(m, at, k)) {
-            continue;
-        }
-        e = depth(m, at, k, &noise);
-        if (!(e > DEEP * noise)) {
-            continue;
-        }
-        pl_multiply(n, n, matrix_now(m, at), at->x, at->work);
-        if (e > DEEP * (noise + m->h * noise_of(sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work)))) {
+        real noise;
+        if (is_before(m, at, k) && depth(m, at, k, &noise) > DEEP * noise &&
+            depth(m, at, k, &noise) > DEEP * rounding_of_places(m, at)) {
             at->c->status |= PL_PENETRATED;
         }
     }

@@ -399,11 +399,10 @@ static real least_speed(const pl_guards *m, const instant *at, real least)
         at->work[k] = sizes(n, matrix_now(m, &then) + k * n, at->x);
     }
     for (k = 0; k < m->impacts; k++) {
-        if (touches(m, at, k)) {
-            most = larger(most, sizes(n, m->speed + (ptrdiff_t)k * n, at->work));
-        }
+        const real *speed = m->speed + (ptrdiff_t)k * n;
+        most = larger(most, sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work));
     }
-    return m->h * noise_of(most);
+    return noise_of(most);
 }
 
 static void jump(const pl_guards *m, instant *at, int k)
@@ -491,7 +490,7 @@ static int rises(const pl_guards *m, int region, int k, const real *x, real *wor
 {
     const int n = m->size;
     return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guards.row + (ptrdiff_t)m->guard[k].row * n, x,
-                   work) > 0;
+                   m->h, work) > 0;
 }
 
 static int holds_in(const pl_guards *m, instant *at, int region, int expression)
@@ -534,7 +533,7 @@ static int heading_in(const pl_guards *m, instant *at, int region, const resting
 {
     (void)known;
     return heading(m->size, matrix_of(m->A, m, matrix_in(m, region)), m->row + one->expression * m->size, at->x,
-                   at->work);
+                   m->h, at->work);
 }
 
 static int is_pressed(const pl_guards *m, const instant *at, int impact)

@@ -7,6 +7,8 @@
 #include "coarse.h"
 #include "impact_oscillator.h"
 #include "shaken_table.h"
+#include "strung.h"
+#include "strung_together.h"
 #include "tap.h"
 #include "touched.h"
 
@@ -165,6 +167,34 @@ static void cradle_of_three(void)
 	ok(good, "cradle: at 3 s");
 }
 
+/* ---- Newton's cradle: -0.1 cos(w t) is the first ball's place where it is below 0, the last one's where it is above,
+ * and the others hang still; with restitution 0 all of them swing together from the first impact on ---- */
+
+static void cradle_on_strings(void)
+{
+	const double w = sqrt(9.81);
+	strung s;
+	strung_together t;
+	double apart = 0, together = 0, y[10];
+	strung_init(&s);
+	strung_together_init(&t);
+	for (int k = 1; k <= 10000; k++) {
+		const double place = -0.1 * cos(w * k * STRUNG_H);
+		strung_step(&s);
+		strung_get(&s, y);
+		for (int i = 0; i < 5; i++)
+			apart = worse(apart, fabs(y[i] - (i == 0 ? fmin(place, 0) : i == 4 ? fmax(place, 0) : 0)));
+		strung_together_step(&t);
+		strung_together_get(&t, y);
+		for (int i = 0; i < 5 && k > 60; i++)
+			together = worse(together, fabs(y[i] - place / 5));
+	}
+	ok(apart <= 1e-13 && strung_status(&s) == 0, "cradle on strings: 100 s, off by %.3g, status %d", apart,
+	   strung_status(&s));
+	ok(together <= 1e-13 && strung_together_status(&t) == 0, "all balls together: off by %.3g, status %d", together,
+	   strung_together_status(&t));
+}
+
 static void energy(void)
 {
 	clatter s;
@@ -239,6 +269,7 @@ int main(void)
 	pressed();
 	table();
 	cradle_of_three();
+	cradle_on_strings();
 	energy();
 	return tap_end();
 }
