@@ -332,8 +332,8 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     decide_anew(m, &at, 1);
 }
 
-/* The most that rounding in a step does to the guard of any bounce.  All of them count: of balls in a row those that lie
- * still have places and speeds of the size of rounding, which say nothing of how it came about.  at->work: the slope */
+/* The most that rounding in a step does to the guard of any bounce.  All of them count: of balls in a row those that
+ * lie still have places and speeds of the size of rounding, which say nothing of how it came about. */
 static real rounding_of_places(const pl_guards *m, const instant *at)
 {
     const int n = m->size;

@@ -51,7 +51,7 @@ stands_up() {
 		*etdrk4) scheme=taylor; options="--scheme etdrk4" ;;
 	esac
 	$stacks $seed $scheme $form $real scene.spec drawn.h || return 1
-	case $1 in # of order 4: what moves together on a spring creeps by the scheme's error, at h some 1e-6 of its place
+	case $1 in # of order 4: what moves together on a spring creeps by the scheme's error, 1e-6 at h
 		*etdrk4) options="$options --step $(sed -n 's/^step //p' scene.spec)/16" ;;
 	esac
 	if ! "$plgen" --real $real $options scene.spec -o scene.c >log 2>&1; then
