@@ -27,7 +27,7 @@
 #include "numbers.h"
 
 /* Stores a state as written in the form that steps have (modes, momenta); its low parts become 0. */
-static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
+static void PL(store_state)(PL_TYPE *s, const real y[PL_STATES])
 {
     int i;
     for (i = 0; i < PL_STATES; i++) {
@@ -51,7 +51,7 @@ static void PL(keep_state)(PL_TYPE *s, const real y[PL_STATES])
 }
 
 /* The state as written, read back from that form; a forced part is not added. */
-static inline void PL(kept_state)(const PL_TYPE *s, real y[PL_STATES])
+static inline void PL(stored_state)(const PL_TYPE *s, real y[PL_STATES])
 {
     int i;
 #if PL_NORMAL > 0
@@ -110,7 +110,7 @@ static void PL(kept)(const PL_TYPE *s, real x[PL_STATES])
 {
     real now[PL_STATES];
     int i;
-    PL(kept_state)(s, x);
+    PL(stored_state)(s, x);
     PL(forced)(s, now);
     for (i = 0; i < PL_STATES; i++) {
         const real z = x[i], sum = z + now[i], back = sum - z;
@@ -223,7 +223,7 @@ static void PL(begin_state)(PL_TYPE *s, real t, const real y[PL_STATES], const r
 void PL(set)(PL_TYPE *s, real t, const real x[PL_STATES])
 #endif
 {
-    PL(keep_state)(s, x);
+    PL(store_state)(s, x);
 #if PL_RELATIVE
     {
         int i;
@@ -312,7 +312,7 @@ void PL(get)(const PL_TYPE *s, real y[PL_STATES])
 #if PL_FORCED && !PL_RELATIVE
     PL(kept)(s, x);
 #else
-    PL(kept_state)(s, x);
+    PL(stored_state)(s, x);
 #endif
 #if PL_RELATIVE
     PL(written)(s, x, y);

@@ -8,7 +8,7 @@
  *     PL_SEGMENTS                of time, in which loads have their formulas
  *     PL_BLOCKS                  independent ones, that are taken one after the other: the states of each are those of
  *                                PL(block_state)[] from PL(block_first)[block] on; 1: the model is one
- * PL_CONVERTED               1: what is kept are not the states: PL(kept_state)(s, y) and PL(keep_state)(s, y);
+ * PL_CONVERTED               1: what is kept are not the states: PL(stored_state)(s, y) and PL(store_state)(s, y);
  *                                not of several blocks
  *     PL_COMPENSATED                    1: of each state what rounding took is in s->low
  *     PL_CARRIES                 of so many, PL(carried)[], it is in s->carry
@@ -104,7 +104,7 @@ static void PL(leap_from)(const PL_TYPE *s, int block, pl_two x[PL_SIZE])
     int i;
 #if PL_CONVERTED
     real y[PL_STATES];
-    PL(kept_state)(s, y);
+    PL(stored_state)(s, y);
 #else
     const real *const y = s->y;
 #endif
@@ -137,7 +137,7 @@ static void PL(leap_to)(PL_TYPE *s, int block, const pl_two x[PL_SIZE])
     for (i = 0; i < states; i++) {
         y[i] = x[i].hi;
     }
-    PL(keep_state)(s, y);
+    PL(store_state)(s, y);
 #else
     for (i = 0; i < states; i++) {
         s->y[PL(state_of)(block, i)] = x[i].hi;

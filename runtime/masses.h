@@ -219,7 +219,7 @@ static PL_APART void PL(stay_regular)(PL_TYPE *s)
 #endif
     if (passes) {
         s->status |= PL_SINGULAR_MASS;
-        PL(keep_state)(s, s->regular);
+        PL(store_state)(s, s->regular);
 #if PL_PLACES
         PL(place)(s);
 #endif

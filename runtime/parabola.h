@@ -8,27 +8,28 @@
  *     PL_TYPE                    the model, with member y
  *     PL_STATES, PL_SIZE         the states; of x: these, what acts on them, and from PL_FORCE_COLUMN on of each of
  *     PL_FORCES                  remainders its value and two derivatives
- *     PL_MIDDLE, PL_END          points of the step: as PL(left_at) counts them, whose first is 0
+ *     PL_MIDDLE, PL_END          points of the step: as PL(remainder_at) counts them, whose first is 0
  *     PL_BARE                    the step that looks for no peaks
  *     PL_CHOICE(s, u)            operator that serves
  *
  *     PL(vector_now)(s, u, x)              x at the start of the step, without the remainder
  *     PL(go_on)(s, which, tau, x)          e^{A tau} x
- *     PL(left_at)(s, which, point, u, y, left)   the remainder at state y */
+ *     PL(remainder_at)(s, which, point, u, y, remainder)   the remainder at state y */
 #include "numbers.h"
 
 #include "given.h"
 
 /* x, part of h after now, of remainders at 0, 1/2 and 1 h */
-static void PL(under)(const PL_TYPE *s, const real *u, int which, real left[3][PL_FORCES], real part, real x[PL_SIZE])
+static void PL(under)(const PL_TYPE *s, const real *u, int which, real remainder[3][PL_FORCES], real part,
+                      real x[PL_SIZE])
 {
     int i;
     PL(vector_now)(s, u, x);
     for (i = 0; i < PL_FORCES; i++) {
         real *const of = x + PL_FORCE_COLUMN + 3 * i;
-        of[0] = left[0][i];
-        of[1] = (4 * left[1][i] - 3 * left[0][i] - left[2][i]) / PL_H;
-        of[2] = 4 * ((left[0][i] - left[1][i]) + (left[2][i] - left[1][i])) / PL_H / PL_H;
+        of[0] = remainder[0][i];
+        of[1] = (4 * remainder[1][i] - 3 * remainder[0][i] - remainder[2][i]) / PL_H;
+        of[2] = 4 * ((remainder[0][i] - remainder[1][i]) + (remainder[2][i] - remainder[1][i])) / PL_H / PL_H;
     }
     PL(go_on)(s, which, part * PL_H, x);
 }
@@ -39,21 +40,21 @@ static PL_APART void PL(state_at)(const PL_TYPE *s, const real *u, real tau, rea
     const int which = PL_CHOICE(s, u);
     const real part = tau / PL_H;
     PL_TYPE end = *s;
-    real left[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
+    real remainder[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
     int i;
     PL_BARE(&end PL_GIVEN);
-    PL(left_at)(s, which, 0, u, s->y, left[0]);
-    PL(left_at)(s, which, PL_END, u, end.y, left[2]);
+    PL(remainder_at)(s, which, 0, u, s->y, remainder[0]);
+    PL(remainder_at)(s, which, PL_END, u, end.y, remainder[2]);
     for (i = 0; i < PL_FORCES; i++) {
-        left[1][i] = (left[0][i] + left[2][i]) / 2;
+        remainder[1][i] = (remainder[0][i] + remainder[2][i]) / 2;
     }
-    PL(under)(s, u, which, left, (real)1 / 2, x);
-    PL(left_at)(s, which, PL_MIDDLE, u, x, left[1]);
-    PL(under)(s, u, which, left, 1, x);
+    PL(under)(s, u, which, remainder, (real)1 / 2, x);
+    PL(remainder_at)(s, which, PL_MIDDLE, u, x, remainder[1]);
+    PL(under)(s, u, which, remainder, 1, x);
     for (i = 0; i < PL_STATES; i++) {
         missed[i] = end.y[i] - x[i];
     }
-    PL(under)(s, u, which, left, part, x);
+    PL(under)(s, u, which, remainder, part, x);
     for (i = 0; i < PL_STATES; i++) {
         y[i] = part > 0 ? x[i] + part * part * part * missed[i] : s->y[i];
     }

@@ -7,8 +7,8 @@
  *     PL_DRIVEN                  1: loads and inputs have a part in them
  *     PL_EVENT_SPLIT                     1: a step of event_split.h, of the forces of given intervals, which that says
  *
- *     PL(remainder)(s, which, node, u, slope, y, left)  forces at a node of the step, with operator `which`
- *     PL(slope_of)(which, z, left, dz)                 A z + B left */
+ *     PL(remainder)(s, which, node, u, slope, y, remainder)  forces at a node of the step, with operator `which`
+ *     PL(slope_of)(which, z, remainder, dz)                 A z + B remainder */
 #include "numbers.h"
 
 #if PL_EVENT_SPLIT
@@ -24,7 +24,7 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
                         real y[PL_STATES])
 {
     static const real ahead[3] = {(real)0.5, (real)0.5, 1}, weight[3] = {2, 2, 1};
-    real z[PL_STATES], dz[PL_STATES], sum[PL_STATES], left[PL_FORCES];
+    real z[PL_STATES], dz[PL_STATES], sum[PL_STATES], remainder[PL_FORCES];
     int i, k;
     for (i = 0; i < PL_STATES; i++) {
         dz[i] = first[i];
@@ -40,11 +40,11 @@ static void PL(predict)(const PL_TYPE *s, int which, const real u[], const real 
 #endif
         }
 #if PL_EVENT_SPLIT
-        PL(forces_at)(s, u, slope, k < 2 ? tau / 2 : tau, when, which, interval, y, left);
-        PL(slope_of)(0, z, left, dz);
+        PL(forces_at)(s, u, slope, k < 2 ? tau / 2 : tau, when, which, interval, y, remainder);
+        PL(slope_of)(0, z, remainder, dz);
 #else
-        PL(remainder)(s, which, k < 2 ? half : end, u, slope, y, left);
-        PL(slope_of)(which, z, left, dz);
+        PL(remainder)(s, which, k < 2 ? half : end, u, slope, y, remainder);
+        PL(slope_of)(which, z, remainder, dz);
 #endif
         for (i = 0; i < PL_STATES; i++) {
             sum[i] += weight[k] * dz[i];

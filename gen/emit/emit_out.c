@@ -138,18 +138,18 @@ static void emit_some_outputs(const struct emitter *e)
 	const struct model *model = e->model;
 	struct formulas *f = formulas_of_outputs(e);
 	const struct reads r = reads_of_formulas(f);
-	const bool *reads = kept_states(e, f), left = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
+	const bool *reads = kept_states(e, f), remainder = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
 	emit_locals(e, reads);
 	emit_param_locals(e, r.param);
-	if (left && keeps_modes(e) && !any_of(reads, e->system->states))
+	if (remainder && keeps_modes(e) && !any_of(reads, e->system->states))
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_get(s, now);\n");
 	emit_input_locals(e, r.input);
 	if (r.time)
 		say(e, "    const double t = $n_time(s);\n");
 	emit_rotated_loads(e, r.load, r.time);
-	if (left)
-		say(e, "    double left[%d];\n"
+	if (remainder)
+		say(e, "    double remainder[%d];\n"
 		       "    %s\n", model->remainder.force_columns, remainder_of_outputs(e));
 	emit_formulas(f, 4);
 }

@@ -24,9 +24,9 @@ struct identifiers {
 
 /* What the generated functions use themselves. */
 static const char *const own_names[] = {
-	"s", "y", "t", "u", "out", "dydt", "residual", "envelope", "factor", "left", "node", "which", "start", "slope",
-	"interval", "excess", "now", "first", "turn", "rotated", "samples", "cell", "clear", "real",
-	"tau", "when", "segment", "span", "terms", "c", "e", "mass", "miss", "conserved",
+	"s", "y", "t", "u", "out", "dydt", "residual", "envelope", "factor", "left", "remainder", "node", "which",
+	"start", "slope", "interval", "excess", "now", "first", "turn", "rotated", "samples", "cell", "clear",
+	"real", "tau", "when", "segment", "span", "terms", "c", "e", "mass", "miss", "conserved",
 	"fabs", "fmin", "fmax", "pow"   /* of <math.h>, which no function of a spec is named after */
 };
 
@@ -40,7 +40,7 @@ static bool begins_with(const char *name, const char *prefix)
 static bool is_load_local(const char *name)
 {
 	static const char *const stem[] =
-		{ "forcing", "load", "part", "left", "flow", "stage", "driven", "accel", "end",
+		{ "forcing", "load", "part", "left", "remainder", "flow", "stage", "driven", "accel", "end",
 					    "from", "to", "off", "before", "lead", "kicked", "drifted" };
 	for (size_t i = 0; i < sizeof stem / sizeof *stem; i++) {
 		size_t length = strlen(stem[i]);

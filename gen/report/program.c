@@ -106,7 +106,7 @@ static const char *sum_text(const struct step *step, const struct action *a)
 	}
 	for (int k = 0; k < a->phi_weights; k++) {
 		const struct wanted *wanted = table[a->phi_weight[k].table]->wanted;
-		text = format("%s%s%s.%s left%d", text, *text ? " + " : "", wanted->name,
+		text = format("%s%s%s.%s r%d", text, *text ? " + " : "", wanted->name,
 			      wanted->phi_weight[a->phi_weight[k].phi_weight].name, a->phi_weight[k].left);
 	}
 	return text;
@@ -115,8 +115,8 @@ static const char *sum_text(const struct step *step, const struct action *a)
 static const char *combination_text(const struct action *a)
 {
 	if (a->minus == NONE)
-		return format("2 left%d", a->plus);
-	return format("left%d %c left%d", a->plus, a->added ? '+' : '-', a->minus);
+		return format("2 r%d", a->plus);
+	return format("r%d %c r%d", a->plus, a->added ? '+' : '-', a->minus);
 }
 
 static void print_action(FILE *to, const struct step *step, const struct action *a)
@@ -124,10 +124,10 @@ static void print_action(FILE *to, const struct step *step, const struct action 
 	const struct program *program = step->program;
 	switch (a->kind) {
 	case ACTION_REMAINDER:
-		fprintf(to, "    left%d = r(%s, %s)\n", a->target, node_text(program, a->node), stage_text(a->from));
+		fprintf(to, "    r%d = r(%s, %s)\n", a->target, node_text(program, a->node), stage_text(a->from));
 		break;
 	case ACTION_COMBINE:
-		fprintf(to, "    left%d = %s\n", a->target, combination_text(a));
+		fprintf(to, "    r%d = %s\n", a->target, combination_text(a));
 		break;
 	case ACTION_SUM:
 		fprintf(to, "    # %s\n    %s = %s\n", a->note, stage_text(a->target), sum_text(step, a));

@@ -8,19 +8,19 @@
 static const char *combination_at(const struct action *a, const char *place)
 {
 	if (a->minus == NONE)
-		return format("2.0 * left%d[%s]", a->plus, place);
-	return format("left%d[%s] %c left%d[%s]", a->plus, place, a->added ? '+' : '-', a->minus, place);
+		return format("2.0 * remainder%d[%s]", a->plus, place);
+	return format("remainder%d[%s] %c remainder%d[%s]", a->plus, place, a->added ? '+' : '-', a->minus, place);
 }
 
 static void emit_combination(const struct emitter *e, const struct action *a)
 {
 	const bool loops = e->step->program->loops;
 	if (loops)
-		say(e, "    for (i = 0; i < %d; i++) { left%d[i] = %s; }\n", e->model->remainder.force_columns,
+		say(e, "    for (i = 0; i < %d; i++) { remainder%d[i] = %s; }\n", e->model->remainder.force_columns,
 		    a->target,
 		    combination_at(a, "i"));
 	for (int c = 0; c < e->model->remainder.force_columns && !loops; c++)
-		say(e, "    left%d[%d] = %s;\n", a->target, c, combination_at(a, integer_text(c)));
+		say(e, "    remainder%d[%d] = %s;\n", a->target, c, combination_at(a, integer_text(c)));
 }
 
 /* y(tau) of a table, with Phi y or from rest */
@@ -58,7 +58,7 @@ static void emit_sum(const struct emitter *e, const struct action *a)
 			const struct coefficient *phi_weight =
 				table[a->phi_weight[k].table]->phi_weight[a->phi_weight[k].phi_weight];
 			add_products(&s, phi_weight + i * force_columns, force_columns,
-				     format("left%d", a->phi_weight[k].left));
+				     format("remainder%d", a->phi_weight[k].left));
 		}
 		const char *target = a->target == STAGE_STATE ? "s->y" : vector_name(a->target);
 		say(e, "    %s[%d] = %s;\n", target, i, sum_of(&s, 14));
@@ -98,13 +98,13 @@ static void emit_evaluation(const struct emitter *e, const struct action *a)
 	if (e->step->event_split) {
 		mpq_srcptr node = e->step->program->node[a->node];
 		const char *tau = mpq_sgn(node) ? time_of(e, node) : "0.0";
-		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, left%d);\n", tau,
+		say(e, "    $n_forces_at(s, start, slope, %s, when, %s, interval, %s, remainder%d);\n", tau,
 		    loads_change(e->system) ? "s->segment" : "0", state, a->target);
 	} else {
-		say(e, "    %s\n", remainder_of_step(e, a->node, state, format("left%d", a->target)));
+		say(e, "    %s\n", remainder_of_step(e, a->node, state, format("remainder%d", a->target)));
 	}
 	if (a->target == 0 && e->step->program->predicts)
-		say(e, "    $n_slope_of(%s, s->y, left0, first);\n", many_operators(e) ? "which" : "0");
+		say(e, "    $n_slope_of(%s, s->y, remainder0, first);\n", many_operators(e) ? "which" : "0");
 }
 
 static void emit_action(const struct emitter *e, const struct action *a)
@@ -148,7 +148,7 @@ static void declare_vectors(const struct emitter *e)
 		say(e, "    double %s;\n", list);
 	say(e, "    double ");
 	for (int i = 0; i < program->lefts; i++)
-		say(e, "%sleft%d[%d]", i ? ", " : "", i, e->model->remainder.force_columns);
+		say(e, "%sremainder%d[%d]", i ? ", " : "", i, e->model->remainder.force_columns);
 	say(e, program->loops ? ";\n    int i;\n" : ";\n");
 }
 
@@ -229,7 +229,7 @@ static void emit_unrolled_slope(const struct emitter *e)
 	for (int i = 0; i < states; i++) {
 		struct summands s = { 0 };
 		add_products(&s, slopes.A + i * states, states, "z");
-		add_products(&s, slopes.B + i * force_columns, force_columns, "left");
+		add_products(&s, slopes.B + i * force_columns, force_columns, "remainder");
 		say(e, "    dz[%d] = %s;  /* %s' */\n", i, sum_of(&s, 12), e->model->names.state[i]);
 	}
 }
@@ -237,12 +237,12 @@ static void emit_unrolled_slope(const struct emitter *e)
 void emit_predictor(const struct emitter *e)
 {
 	open_function(e, "dz = A z + B r, r being the nonlinear remainder",
-		      "static void $n_slope_of(int which, const double z[$N_STATES], const double left[%d], "
+		      "static void $n_slope_of(int which, const double z[$N_STATES], const double remainder[%d], "
 		      "double dz[$N_STATES])", e->model->remainder.force_columns);
 	if (e->step->program->loops)
 		say(e,
 		    "    pl_multiply($N_STATES, $N_STATES, %s, z, dz);\n"
-		    "    pl_multiply_add($N_STATES, %d, %s, left, dz);\n",
+		    "    pl_multiply_add($N_STATES, %d, %s, remainder, dz);\n",
 		    matrix_text(e, "A"), e->model->remainder.force_columns, matrix_text(e, "B"));
 	else
 		emit_unrolled_slope(e);

@@ -183,7 +183,7 @@ void emit_function_values(const struct emitter *e)
 		emit_node_phases(e, r.load);
 	open_function(e, format("What forces and factors of forces are at a node, as functions of time%s",
 				has_changes(e) ? ", their\n * formulas those that hold at another time" : ""),
-		      "static void $n_functions(const $n *s, int node, double start, double left[%d])", count);
+		      "static void $n_functions(const $n *s, int node, double start, double remainder[%d])", count);
 	emit_param_locals(e, r.param);
 	if (r.time)
 		say(e, "    const double t = $n_time(s) + $n_node[node];\n");
@@ -191,7 +191,7 @@ void emit_function_values(const struct emitter *e)
 	struct reading how = { .when = has_changes(e) ? "start" : NULL };
 	struct formulas *f = formulas_new(&here, how, count, form);
 	for (int k = 0; k < count; k++)
-		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 14, NULL);
+		tape_set(formulas_tape(f), format("remainder[%d]", k), formula(f, form[k]), 14, NULL);
 	emit_formulas(f, 4);
 	/* conditions alone may read t */
 	close_function(e, r.time && has_changes(e) ? "t s node start" : "s node start");
@@ -236,7 +236,7 @@ static void add_block(const struct emitter *e, struct summands *s, int matrix, i
 	const struct normal *m = normal_of_step(e);
 	const double *value = m->matrix[matrix].value;
 	const struct mode_block *rows = &m->block[row], *columns = &m->block[column];
-	const char *name = format("left%d_%d_%d", matrix + 1, row + 1, column + 1);
+	const char *name = format("remainder%d_%d_%d", matrix + 1, row + 1, column + 1);
 	switch (shape_of(e, value, row, column)) {
 	case SHAPE_ZERO:
 		return;
@@ -308,12 +308,13 @@ static void emit_rest_forces(const struct emitter *e)
 	for (int k = 0; k < split->rests; k++)
 		form[k] = split->rest[k].form;
 	open_function(e, "Nonlinear terms, each without its factor that depends on time alone",
-		      "static void $n_rest(const $n *s, const double y[$N_STATES], double left[%d])", split->rests);
+		      "static void $n_rest(const $n *s, const double y[$N_STATES], double remainder[%d])",
+		      split->rests);
 	emit_locals_of(e, r.state, "y");
 	emit_param_locals(e, r.param);
 	struct formulas *f = formulas_new(e, (struct reading){ 0 }, split->rests, form);
 	for (int k = 0; k < split->rests; k++)
-		tape_set(formulas_tape(f), format("left[%d]", k), formula(f, form[k]), 15,
+		tape_set(formulas_tape(f), format("remainder[%d]", k), formula(f, form[k]), 15,
 			 e->model->names.coord[split->rest[k].coord]);
 	emit_formulas(f, 4);
 	close_function(e, "s");
@@ -359,7 +360,7 @@ static void emit_rest_values(const struct emitter *e)
 	struct reads r = reads_of_rest(e);
 	if (split->rests == 0)
 		return;
-	say(e, "    double y[$N_STATES], left[%d];\n", split->rests);
+	say(e, "    double y[$N_STATES], remainder[%d];\n", split->rests);
 	for (int i = 0; i < e->system->states; i++) {
 		int place, block = block_of_coordinate(e, e->system->coord[i], &place);
 		const struct mode_block *own = &m->block[block];
@@ -373,9 +374,9 @@ static void emit_rest_values(const struct emitter *e)
 					       own->place + j));
 		say(e, "    y[%d] = %s;\n", i, sum_of(&s, 11));
 	}
-	say(e, "    $n_rest(s, y, left);\n");
+	say(e, "    $n_rest(s, y, remainder);\n");
 	for (int k = 0; k < split->rests; k++)
-		say(e, "    const double rest%d = left[%d]%s%s;\n", k + 1, k, split->rest[k].function ? " * " : "",
+		say(e, "    const double rest%d = remainder[%d]%s%s;\n", k + 1, k, split->rest[k].function ? " * " : "",
 		    split->rest[k].function ? function_text(split->rest[k].function) : "");
 }
 
@@ -443,12 +444,12 @@ void emit_forces_on_modes(const struct emitter *e)
 	const struct model *model = e->model;
 	struct summands *sum = ARRAY(struct summands, (size_t)m->blocks);
 	for (int c = 0; c < model->remainder.force_columns; c++)
-		add_force_on(e, sum, c, coordinate_of_row(model, model->remainder.row[c]), format("left[%d]", c));
+		add_force_on(e, sum, c, coordinate_of_row(model, model->remainder.row[c]), format("remainder[%d]", c));
 	open_function(e, "The remainder as forces on the modes",
-		      "static void $n_on_modes(int which, const double left[%d], double force[%d])",
+		      "static void $n_on_modes(int which, const double remainder[%d], double force[%d])",
 		      model->remainder.force_columns, m->width);
 	say(e, "    int i;\n");
 	for (int b = 0; b < m->blocks; b++)
 		say_row_sum(e, format("force[%d + i]", m->block[b].place), m->block[b].rows, &sum[b]);
-	close_function(e, "which left");
+	close_function(e, "which remainder");
 }

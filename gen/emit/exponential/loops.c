@@ -173,7 +173,7 @@ void emit_sum_loop(const struct emitter *e, const struct action *a)
 	for (int k = 0; k < a->phi_weights; k++) {
 		const struct phi_weight *phi_weight =
 			&table[a->phi_weight[k].table]->wanted->phi_weight[a->phi_weight[k].phi_weight];
-		say(e, "    pl_multiply_add($N_STATES, %d, %s, left%d, %s);\n", e->model->remainder.force_columns,
+		say(e, "    pl_multiply_add($N_STATES, %d, %s, remainder%d, %s);\n", e->model->remainder.force_columns,
 		    matrix_text(e, phi_weight->name), a->phi_weight[k].left, target);
 	}
 	if (a->target == STAGE_STATE)

@@ -87,15 +87,15 @@ const char *samples_of_step(const struct emitter *e)
 	return e->ramps ? "start, slope" : given_inputs(e) ? "u, NULL" : "NULL, NULL";
 }
 
-const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left)
+const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *remainder)
 {
 	return spell(e, "$n_remainder(s, %s, %d, %s, %s, %s);", many_operators(e) ? "which" : "0", node,
-		     samples_of_step(e), state, left);
+		     samples_of_step(e), state, remainder);
 }
 
 const char *remainder_of_outputs(const struct emitter *e)
 {
-	return spell(e, "$n_remainder(s, 0, 0, %s, %s, %s, left);", given_inputs(e) ? "s->u" : "NULL",
+	return spell(e, "$n_remainder(s, 0, 0, %s, %s, %s, remainder);", given_inputs(e) ? "s->u" : "NULL",
 		     e->ramps ? "s->slope" : "NULL", e->step->normal ? "now" : "s->y");
 }
 
@@ -170,7 +170,8 @@ static void emit_lefts(const struct emitter *e, const struct schedule *schedule)
 	struct tape *t = formulas_tape(f);
 	for (int c = 0; c < e->model->remainder.force_columns; c++) {
 		tape_ref form = is_read(e, c) ? formula(f, schedule->common[c]) : tape_number(t, 0);
-		tape_set(t, format("left[%d]", c), with_excess(f, c, form, schedule), 15, name_of_force_column(e, c));
+		tape_set(t, format("remainder[%d]", c), with_excess(f, c, form, schedule), 15,
+			 name_of_force_column(e, c));
 	}
 	emit_formulas(f, 4);
 }
@@ -215,7 +216,7 @@ void emit_remainder(const struct emitter *e)
 		emit_excess(e, &schedule);
 	open_function(e, "Nonlinear remainder at state y: a force on each equation that has one",
 		      "static void $n_remainder(const $n *s, int which, int node, const double u[],\n"
-		      "    const double slope[], const double y[$N_STATES], double left[%d])",
+		      "    const double slope[], const double y[$N_STATES], double remainder[%d])",
 		      e->model->remainder.force_columns);
 	emit_remainder_locals(e, &r, "y", node);
 	if (schedule.count)

@@ -209,7 +209,7 @@ static void emit_interrupted_step(const struct emitter *e, const char *segment, 
 	say(e, "    if (%s < %d && $n_until(s, %s) < %s) {\n"
 	       "        double y[$N_STATES];\n"
 	       "        %s$n_pass(s, %s%s, %sy);\n"
-	       "        $n_keep_state(s, y);\n"
+	       "        $n_store_state(s, y);\n"
 	       "    } else {\n"
 	       "        $n_plain_step(s%s);\n"
 	       "    }\n",

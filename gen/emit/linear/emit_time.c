@@ -123,7 +123,7 @@ static const char *input_parameter(const struct emitter *e)
 static void emit_remainder_now(const struct emitter *e)
 {
 	if (e->step->layout.powers == 1)
-		say(e, "    %s\n", remainder_of_step(e, 0, "s->y", "left"));
+		say(e, "    %s\n", remainder_of_step(e, 0, "s->y", "remainder"));
 }
 
 void emit_series_vector(const struct emitter *e, bool looped)
@@ -136,13 +136,14 @@ void emit_series_vector(const struct emitter *e, bool looped)
 		say(e, "    int i;\n");
 	if (!loads_change(e->system))
 		emit_remainder_now(e);
-	say(e, "    $n_%s(s, x);\n", full ? "kept" : "kept_state");
+	say(e, "    $n_%s(s, x);\n", full ? "kept" : "stored_state");
 	emit_held(e);
 	store_loads(e, layout->load, "");
 	store_inputs(e, layout->input);
 	if (force_columns)
 		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", force_columns, layout->force_column,
-		    layout->powers > 1 ? "0.0" : loads_change(e->system) ? "left ? left[i] : 0.0" : "left[i]");
+		    layout->powers > 1 ? "0.0"
+		    : loads_change(e->system) ? "remainder ? remainder[i] : 0.0" : "remainder[i]");
 }
 
 void emit_vector_now(const struct emitter *e)
@@ -212,7 +213,7 @@ void emit_passing(const struct emitter *e)
 	open_function(e, "The state tau after now; split where loads change their formula",
 		      "static %s $n_pass(const $n *s, %s%s%sdouble tau, %sdouble y[$N_STATES])",
 		      forced ? "int" : "void", e->step->branches > 1 ? "int which, " : "", input_parameter(e),
-		      layout->powers == 1 ? "const double *left, " : "", forced ? "int whole, " : "");
+		      layout->powers == 1 ? "const double *remainder, " : "", forced ? "int whole, " : "");
 	say(e, "    double x[%d];\n", layout->size);
 	emit_series_vector(e, true);
 	say(e, "    %s$n_pass_changes(s, %s, %s, tau, x);\n"
@@ -243,7 +244,7 @@ void emit_held_remainder(const struct emitter *e)
 	emit_samples(e);
 	if (e->step->branches > 1)
 		say(e, "    const int which = %s;\n", selection_call(e));
-	say(e, "    double left[%d];\n", e->system->force_columns);
+	say(e, "    double remainder[%d];\n", e->system->force_columns);
 }
 
 /* Differences are kept, and what loads sustain is added to the states as written. */
@@ -302,14 +303,14 @@ void emit_at_by(const struct emitter *e, const char *function)
 static void emit_passing_at(const struct emitter *e)
 {
 	const char *which = e->step->branches > 1 ? "which, " : "", *u = given_inputs(e) ? "u, " : "";
-	const char *left = e->step->layout.powers == 1 ? "left, " : "", *full = e->step->forced ? "1, " : "";
+	const char *remainder = e->step->layout.powers == 1 ? "remainder, " : "", *full = e->step->forced ? "1, " : "";
 	bool relative = e->model->relative != NULL;
 	emit_remainder_now(e);
 	if (relative)
 		say(e, "    double x[$N_STATES];\n");
 	if (e->step->forced)            /* of what is kept and its forced part $n_get takes what rounding loses too */
 		emit_at_start(e);
-	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, left, full, relative ? "x" : "y");
+	say(e, "    $n_pass(s, %s%s%stau, %s%s);\n", which, u, remainder, full, relative ? "x" : "y");
 	if (relative)
 		say(e, "    $n_written(s, x, y);\n");
 }
@@ -347,12 +348,12 @@ static int point_at(const struct step *step, int p)
 	return point;
 }
 
-static void emit_left_at(const struct emitter *e)
+static void emit_remainder_at(const struct emitter *e)
 {
-	open_function(e, NULL, "static void $n_left_at(const $n *s, int which, int point, const double *u, "
-		      "const double y[$N_STATES], double left[%d])", e->system->force_columns);
+	open_function(e, NULL, "static void $n_remainder_at(const $n *s, int which, int point, const double *u, "
+		      "const double y[$N_STATES], double remainder[%d])", e->system->force_columns);
 	emit_samples(e);
-	say(e, "    $n_remainder(s, which, point, %s, y, left);\n", samples_of_step(e));
+	say(e, "    $n_remainder(s, which, point, %s, y, remainder);\n", samples_of_step(e));
 	close_function(e, "u");
 }
 
@@ -379,7 +380,7 @@ static void emit_parabola(const struct emitter *e, bool blocks)
 {
 	const struct layout *layout = &e->step->layout;
 	emit_vector_now(e);
-	emit_left_at(e);
+	emit_remainder_at(e);
 	if (e->step->branches > 1)
 		emit_choice(e);
 	emit_go_on(e, blocks);

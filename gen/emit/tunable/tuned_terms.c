@@ -51,7 +51,7 @@ const char *linear_entry(const struct emitter *e, const struct tape_node *n)
 	case TABLE_FACTOR: return cell("factor", i, table->columns);
 	case TABLE_DIRECT: return cell(spell(e, "$n_direct[s->segment]"), i, load_columns(e->system));
 	case TABLE_FORCED: return cell(spell(e, "$n_forced_part[s->segment]"), i, table->columns);
-	case TABLE_LEFT:   return format("left[%d]", i);
+	case TABLE_LEFT:   return format("remainder[%d]", i);
 	case TABLE_SEEN:   return spell(e, "$n_dot($n_seen[%d], s->y)", i);
 	case TABLE_OWN_OUT:
 		return own_entry(e, "out", i / x->size, i % x->size, e->system->states, x->loads);
