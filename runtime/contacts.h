@@ -8,11 +8,10 @@
  * more, which it brings to agree by pivoting.  contacts: impacts, as
  * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events, most.
  * instant: a state and what stands of it, with time [s] after the start of the step, and chain.  The enclosed run of
- * the generator (gen/step/struck.c) goes by it, too, with limits of its own, and names of roots.h. */
+ * the generator (gen/step/certify) goes by it, too, with limits of its own, and names of roots.h. */
 
-/* How many impacts there may be at one instant before they are ended, and how many more before they are ended again;
- * how many are listed; how often speeds are taken from what comes to rest; how
- * many places of the list are left for what comes to rest */
+/* How many impacts there may be at one instant before they are ended, and how many more before that again; how many are
+ * listed; how often speeds are taken from what comes to rest; how many places of the list are left for that */
 enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_SWEEPS = 1000, LAST = 6 };
 #ifndef LISTED_AT_ONCE
 #define LISTED_AT_ONCE 12
@@ -59,12 +58,11 @@ typedef struct resting {
 static real unit(const contacts *m);
 static real step_of(const contacts *m);
 
-/* The interval of a switching function, and into another one; renew: behind such changes, what stands of the state */
+/* The interval of a switching function, and into another one; renew: behind such changes, what stands of the state;
+ * whether nothing that is held there excludes another */
 static int interval_of(const contacts *m, const instant *at, int expression);
 static void go_to(const contacts *m, instant *at, int expression, int interval);
 static void renew(const contacts *m, instant *at);
-
-/* Whether nothing that is held there excludes another */
 static int can_be(const contacts *m, const instant *at);
 
 /* The interval in which the contact of impact k rests; -1: it is no bounce */
@@ -82,12 +80,11 @@ static real press_of(const contacts *m, const instant *at, int k);
 static real speed_of_met(const contacts *m, instant *at, int k);
 static real least_speed(const contacts *m, const instant *at, real least);
 
-/* The state by the jump of impact k; by that with restitution 0; without what rounding has left of the way to it */
+/* The state by the jump of impact k; by that with restitution 0; without what rounding has left of the way to it; what
+ * is held is put where it is held */
 static void jump(const contacts *m, instant *at, int k);
 static void stop(const contacts *m, instant *at, int k);
 static void put_on(const contacts *m, instant *at, int k);
-
-/* What is held is put where it is held. */
 static void keep(const contacts *m, instant *at);
 
 /* Each switching function into the interval where it is now; jumped: past a bounce, too */
@@ -167,10 +164,9 @@ static int is_listed(pl_chain *chain, int k, int count, int most)
 static int has_room(const contacts *m, instant *at, int k)
 {
     pl_chain *chain = &at->chain;
-    const int expression = m->impact[k].expression, breakpoint = m->impact[k].breakpoint;
     if (is_listed(chain, k, listed(at), m->max_events)) {
-        chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, expression, breakpoint,
-                                  m->impact[k].upward);
+        chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, m->impact[k].expression,
+                                  m->impact[k].breakpoint, m->impact[k].upward);
     }
     if (!chain->full && !has_time(m, chain)) {
         say(at, PL_TOO_MANY_EVENTS);
@@ -229,15 +225,7 @@ static int is_stopped(const contacts *m, const instant *at, int expression, int 
 /* How long it flies that leaves the guard of k, from how it is pressed back there [unit]; -1: for good */
 static real flight(const contacts *m, const instant *at, int k)
 {
-    real speed, press;
-    if (rest_of(m, k) < 0) {
-        return -1;
-    }
-    speed = speed_of(m, at, k);
-    if (speed > 0) {
-        return -1;
-    }
-    press = press_of(m, at, k);
+    const real speed = rest_of(m, k) < 0 ? 1 : speed_of(m, at, k), press = speed > 0 ? 0 : press_of(m, at, k);
     return press > 0 ? -2 * speed / press : -1;
 }
 
@@ -377,9 +365,7 @@ static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
         chain->most = larger(chain->most, speed);
         if (chain->impacts == MOST_AT_ONCE) {
             chain->full = !give_up(m, at, met);
-            if (chain->full) {
-                say(at, PL_TOO_MANY_EVENTS);
-            }
+            say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
             begins = k = -1;
             continue;
         }
@@ -413,11 +399,9 @@ static void list_changes(const contacts *m, instant *at, const resting *r, int c
 {
     int i, k;
     for (i = 0; i < count; i++) {
-        for (k = from[i]; k < to[i]; k++) {
-            (void)has_listed(m, at, 1, at->time, r[i].expression, k, 1);
-        }
-        for (k = from[i]; k > to[i]; k--) {
-            (void)has_listed(m, at, 1, at->time, r[i].expression, k - 1, 0);
+        const int up = to[i] > from[i];
+        for (k = from[i]; k != to[i]; k += up ? 1 : -1) {
+            (void)has_listed(m, at, 1, at->time, r[i].expression, k - !up, up);
         }
     }
 }
@@ -462,13 +446,9 @@ static int pivot(const contacts *m, instant *at, const resting *r, int count, in
         }
         chances = wrong < fewest ? CHANCES : chances - 1;
         fewest = wrong < fewest ? wrong : fewest;
-        for (i = 0; i < count; i++) {
-            if (to[i] != interval[i]) {
-                interval[i] = to[i];
-                if (chances <= 0) {
-                    break;
-                }
-            }
+        for (i = 0, wrong = 0; i < count && (chances > 0 || !wrong); i++) {
+            wrong = to[i] != interval[i];
+            interval[i] = to[i];
         }
     }
     return 0;
@@ -520,11 +500,7 @@ static void resolve(const contacts *m, instant *at, int turned)
     if (count == 0 || agrees(m, at, r, count, now) == 2) {
         return;
     }
-    if (count <= MOST) {
-        found = best_of(m, at, r, count, before, next, &how);
-    } else {
-        found = pivot(m, at, r, count, next);
-    }
+    found = count <= MOST ? best_of(m, at, r, count, before, next, &how) : pivot(m, at, r, count, next);
     if (!found) {
         say(at, PL_UNDECIDED);
         enter_all(m, at, r, count, now);
