@@ -378,6 +378,60 @@ static size_t PL(all_alone)(PL_INSTANCES *b, const PL(steps_ahead) *ahead, real 
 }
 #endif
 
+#if PL_PEAKS > 0
+/* ---- peaks in a step ---- */
+
+/* Instance j by itself, from states x on: larger values inside the step that ends at outputs `end` */
+static void PL(look_alone)(const PL_INSTANCES *b, size_t j, real *x, const real *acting, const real *end, real *peak)
+{
+    int i;
+#if PL_FACTORS > 0
+    PL_TYPE one = b->shared;
+    const PL_TYPE *const s = &one;
+    PL(batch_factors)(b, j, &one);
+#else
+    const PL_TYPE *const s = &b->shared;
+    (void)j;
+#endif
+#if PL_MOMENTA
+    PL(velocities)(x);
+#endif
+    for (i = PL_STATES; i < PL_SIZE; i++) {
+        x[i] = acting[i - PL_STATES];
+    }
+    PL(look)(s, x, end, peak);
+}
+
+/* Where a lane may have passed a peak, each is looked at by itself. */
+static void PL(lanes_look)(const PL_INSTANCES *b, size_t j, const pl_lanes *start, const real *acting,
+                           const pl_lanes *most, const pl_lanes *value, pl_lanes *peak)
+{
+    size_t l;
+    int i, p;
+    for (l = 0; l < PL_AT_ONCE && j + l < b->count; l++) {
+        real x[PL_SIZE], end[PL_OUTPUTS], largest[PL_PEAKS];
+        int any = 0;
+        for (p = 0; p < PL_PEAKS; p++) {
+            largest[p] = PL(lane)(&peak[PL(peak_output)[p]], l);
+            any |= !(PL(lane)(&most[p], l) <= largest[p]);
+        }
+        if (!any) {
+            continue;
+        }
+        for (i = 0; i < PL_STATES; i++) {
+            x[i] = PL(lane)(&start[i], l);
+        }
+        for (i = 0; i < PL_OUTPUTS; i++) {
+            end[i] = PL(lane)(&value[i], l);
+        }
+        PL(look_alone)(b, j + l, x, acting, end, largest);
+        for (p = 0; p < PL_PEAKS; p++) {
+            memcpy((char *)&peak[PL(peak_output)[p]] + l * sizeof(real), &largest[p], sizeof(real));
+        }
+    }
+}
+#endif
+
 /* ---- for kernels: what instances share ---- */
 
 #if PL_SHARES
