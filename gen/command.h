@@ -52,6 +52,7 @@ void read_options(int argc, char **argv, struct options *options); /* ends the p
 
 _Noreturn void wrong_usage(const char *message);
 bool ends_in(const char *text, const char *end);            /* and is longer */
+const char *base_name(const char *path);                    /* without its folders; NULL of NULL */
 void find_together(struct options *options);                /* and the name of the header */
 
 /* ---- choose.c: the cheapest step that is as exact as needed ---- */
@@ -71,12 +72,16 @@ bool add_binary(struct fmu *fmu, const char *headers);
 /* C that exports what is called, as WebAssembly; NULL: it was said why there is none */
 char *wasm_of(const char *code, size_t *length);
 
-/* ---- sampling.c: steps that nothing is said of ---- */
+/* ---- sampling.c: steps that nothing is said of, and those to a time ---- */
 
 const char *round_step(double h);  /* [s] 1, 2 or 5 times a power of 10: the largest that is not above h */
 /* Of a linear model with needs, the longest, to be tried first; NULL: what was taken may stay, else a shorter one */
 const char *first_step(const struct model *stepped);
 const char *shorter_step(const struct step *taken);
+/* The step as it was asked for, made shorter so that a whole number of them, which is returned, ends there */
+long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end);
+/* Of what the C would have none changes the motion, and its states are the written ones. */
+struct request request_of_motion(const struct request *given);
 
 /* ---- publish.c: texts in memory, then files ---- */
 

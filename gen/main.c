@@ -12,7 +12,6 @@
 #include "step/cost.h"
 #include "step/linear/images.h"
 
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -139,34 +138,6 @@ static void make_motion(void *context)
 	struct work *w = context;
 	if (!make_of(w, w->spec->source))
 		abandon();
-}
-
-/* The step as it was asked for, made shorter so that a whole number of them, which is returned, ends there */
-static long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end)
-{
-	RATIONAL steps = ZERO;
-	INTEGER count = INTEGER_ZERO;
-	if (mpq_sgn(h) == 0)            /* that there is none is said where the model is made */
-		return 0;
-	mpq_div(steps, end, h);
-	mpz_cdiv_q(count, mpq_numref(steps), mpq_denref(steps));
-	if (mpz_sgn(count) == 0)
-		return 0;
-	mpq_set_z(steps, count);
-	mpq_div(steps, end, steps);
-	request->step = exact_text(steps);
-	return mpz_fits_slong_p(count) ? mpz_get_si(count) : LONG_MAX;
-}
-
-/* Of what the C would have none changes the motion, and its states are the written ones. */
-static struct request request_of_motion(const struct request *given)
-{
-	struct request request = *given;
-	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
-	request.fast = request.phasors = false;
-	request.modes = request.linear.where = NULL;
-	request.rows = 0;
-	return request;
 }
 
 /* t=END and the states that the model's own step comes to then; NULL: it was said why it does not */
@@ -320,12 +291,6 @@ static bool derive(struct work *w)
 }
 
 /* ---- from a step to texts ---- */
-
-static const char *base_name(const char *path)
-{
-	const char *slash = path ? strrchr(path, '/') : NULL;
-	return slash ? slash + 1 : path;
-}
 
 static void print_closed_form(FILE *to, const struct work *w)
 {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* How long a step is where a spec with needs says nothing of it. A linear step is exact however long it is, so what
  * counts is what its samples show: two in the shortest period of the loads and of the modes that are kept, as Nyquist
- * and Shannon ask for; and a hundred until the first need ends. */
+ * and Shannon ask for; and a hundred until the first need ends. And the steps of a motion that ends at a given time. */
 #include "command.h"
 #include "step/linear/images.h"
 
+#include <limits.h>
 #include <math.h>
 
 enum { SAMPLES = 100, SAMPLES_OF_PERIOD = 2 };
@@ -53,4 +54,30 @@ const char *shorter_step(const struct step *taken)
 {
 	const double longest = shortest_period(taken) / SAMPLES_OF_PERIOD;
 	return mpq_get_d(taken->model->h) > longest ? round_step(longest) : NULL;
+}
+
+long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end)
+{
+	RATIONAL steps = ZERO;
+	INTEGER count = INTEGER_ZERO;
+	if (mpq_sgn(h) == 0)            /* that there is none is said where the model is made */
+		return 0;
+	mpq_div(steps, end, h);
+	mpz_cdiv_q(count, mpq_numref(steps), mpq_denref(steps));
+	if (mpz_sgn(count) == 0)
+		return 0;
+	mpq_set_z(steps, count);
+	mpq_div(steps, end, steps);
+	request->step = exact_text(steps);
+	return mpz_fits_slong_p(count) ? mpz_get_si(count) : LONG_MAX;
+}
+
+struct request request_of_motion(const struct request *given)
+{
+	struct request request = *given;
+	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
+	request.fast = request.phasors = false;
+	request.modes = request.linear.where = NULL;
+	request.rows = 0;
+	return request;
 }

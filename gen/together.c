@@ -18,6 +18,12 @@ bool ends_in(const char *text, const char *end)
 	return length > tail && strcmp(text + length - tail, end) == 0;
 }
 
+const char *base_name(const char *path)
+{
+	const char *slash = path ? strrchr(path, '/') : NULL;
+	return slash ? slash + 1 : path;
+}
+
 /* The option that asks for another text than C */
 static const char *option_of_print(enum print print)
 {
