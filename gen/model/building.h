@@ -76,6 +76,10 @@ void check_mass(const struct building *b);
 
 void find_delays(struct building *b);                       /* model->delays; after the step is known */
 
+/* ---- tunable/params.c ---- */
+
+void part_factors(struct building *b);             /* params that regions have as numbers, not inputs */
+
 /* ---- system.c: residuals to M, C, K, loads and inputs ---- */
 
 void fill_states(struct building *b, const struct segment_equations *rows); /* M, C, K, inputs */

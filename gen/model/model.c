@@ -358,21 +358,6 @@ static void collect_intervals(struct building *b)
 	b->model->system.change = c->change;
 }
 
-/* Params that regions have as numbers, not as inputs */
-static void part_factors(struct building *b)
-{
-	const struct request *request = b->request;
-	const bool *factor = request->again.factor         ? request->again.factor
-			     : request->find_factors ? request->find_factors(b)
-						     : ARRAY(bool, b->spec->tuned.count);
-	for (int i = 0, acting = 0; i < b->spec->tuned.count; i++) {
-		b->spec->tuned.tunable[i].symbol->tuning.factor = factor[i];
-		b->spec->tuned.tunable[i].symbol->tuning.acting = factor[i] ? acting : acting++;
-		if (factor[i])
-			b->factor = b->model->params.factor = factor;
-	}
-}
-
 struct derivation {
 	struct building *b;
 	int derived;

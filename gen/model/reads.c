@@ -77,3 +77,11 @@ int coordinate_of_row(const struct model *model, int row)
 		coord++;
 	return coord;
 }
+
+bool has_steady_outputs(const struct model *model)
+{
+	bool steady = model->declared_outputs && model->system.segments == 1;
+	for (int i = 0; i < model->outputs; i++)
+		steady = steady && !model->output[i].left;
+	return steady;
+}

@@ -498,15 +498,6 @@ static void emit_start(const struct emitter *e)
 	emit_array(e, "Derivatives of the initial state", "d_initial", 2, size, value, NULL);
 }
 
-static const struct param_range *range_of_param(const struct model *model, const struct symbol *param)
-{
-	const struct tuning *t = tunables_of(model);
-	for (int k = 0; t && k < t->given; k++)
-		if (t->param[k].symbol == param)
-			return model->params.range[k];
-	return NULL;
-}
-
 /* For programs that look for other values, as a fit does; initial values and inputs have none here. */
 static void emit_values_of_columns(const struct emitter *e)
 {
@@ -538,15 +529,6 @@ static void emit_inputs_of_columns(const struct emitter *e)
 		emit_int_list(e, "d_input", d->columns, input);
 }
 
-/* Is what outputs have of the state the same all along? */
-static bool has_steady_outputs(const struct emitter *e)
-{
-	bool steady = e->model->declared_outputs && e->model->system.segments == 1;
-	for (int i = 0; i < e->model->outputs; i++)
-		steady = steady && !e->model->output[i].left;
-	return steady;
-}
-
 static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 {
 	const struct derivatives *d = e->step->derivatives;
@@ -556,7 +538,7 @@ static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e) },
+		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e->model) },
 		   { "DECLARED", e->model->declared_outputs },
 		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
 		   { "SEGMENTS", row ? e->model->system.segments : 1 },

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tunable params that the instance has: expressions read them, or they act like inputs. */
 #include "inner.h"
+#include "model/building.h"
 
 const struct node *first_tuned(const struct node *node)
 {
@@ -90,4 +91,27 @@ const struct model *model_elsewhere(const struct model *model)
 const struct tuning *tunables_of(const struct model *model)
 {
 	return model->params.tuning ? model->params.tuning : model->params.held;
+}
+
+const struct param_range *range_of_param(const struct model *model, const struct symbol *param)
+{
+	const struct tuning *t = tunables_of(model);
+	for (int k = 0; t && k < t->given; k++)
+		if (t->param[k].symbol == param)
+			return model->params.range[k];
+	return NULL;
+}
+
+void part_factors(struct building *b)
+{
+	const struct request *request = b->request;
+	const bool *factor = request->again.factor         ? request->again.factor
+			     : request->find_factors ? request->find_factors(b)
+						     : ARRAY(bool, b->spec->tuned.count);
+	for (int i = 0, acting = 0; i < b->spec->tuned.count; i++) {
+		b->spec->tuned.tunable[i].symbol->tuning.factor = factor[i];
+		b->spec->tuned.tunable[i].symbol->tuning.acting = factor[i] ? acting : acting++;
+		if (factor[i])
+			b->factor = b->model->params.factor = factor;
+	}
 }

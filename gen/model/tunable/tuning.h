@@ -69,6 +69,8 @@ void derive_params(struct spec *spec);
 
 /* ---- params.c: tunable params that the instance has ---- */
 
+/* NULL: it is not tunable, or none was given */
+const struct param_range *range_of_param(const struct model *model, const struct symbol *param);
 void spread_tuned(const struct spec *spec);     /* to params, matrices and lets that are made of tunable ones */
 void refuse_what_stays(const struct spec *spec); /* of the spec's values, where tunable params are other ones */
 /* the first name in it that is tunable, or made of what is; NULL: there is none */
