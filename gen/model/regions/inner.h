@@ -14,15 +14,13 @@ int  find_switching_function(struct switching *s, int segment, const struct comp
 /* In segments where nothing depends on it, it is as in the one before, or after. */
 void complete_switching_functions(struct switching *s);
 bool share_function(const struct switching *a, const struct switching *b);
+int  count_candidates(struct switching *s);                 /* in one segment of time; strides of switching functions */
 
 /* ---- regions.c: piecewise-linear equations as regions with linear ones ---- */
 
 /* of these rows of the equations; leaves the statement where they are too many, or with dry friction */
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
-/* its index; apart: with no other's, though they are equal */
-int  add_system(struct switching *s, const struct linear *system, int segment, bool apart);
-int  count_candidates(struct switching *s);                 /* in one segment of time; strides of switching functions */
 void check_sum(const struct building *b, const struct switching *s);  /* of regions that are cached; refuses others */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */

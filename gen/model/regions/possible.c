@@ -362,3 +362,13 @@ void check_jumps(struct building *b, const struct switching *s)
 				check_face(b, s, r, above, e);
 		}
 }
+
+int possible_regions(const struct switching *s)
+{
+	int count = s->parts > 0;
+	for (int p = 0; p < s->parts; p++)
+		count *= possible_regions(s->part[p].model->switching);
+	for (int r = 0; r < s->regions && !s->parts; r++)
+		count += s->region[r].possible;
+	return count;
+}

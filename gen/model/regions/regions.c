@@ -9,12 +9,7 @@
 #include "model/checks.h"
 #include "model/contacts/friction.h"
 
-#include <limits.h>
-
-enum {
-	LIMIT_CANDIDATES = 6561,    /* regions looked at, before those that cannot be are left out */
-	MOST_SLOTS = 65536
-};
+enum { MOST_SLOTS = 65536 };
 
 /* ---- is it? ---- */
 
@@ -59,16 +54,6 @@ static void note_decision(struct looking *l, const struct node *node, int functi
 	if (function >= 0 && l->by >= 0 && l->by != function && !l->mixed)
 		l->mixed = node;
 	l->by = function >= 0 ? function : l->by;
-}
-
-int possible_regions(const struct switching *s)
-{
-	int count = s->parts > 0;
-	for (int p = 0; p < s->parts; p++)
-		count *= possible_regions(s->part[p].model->switching);
-	for (int r = 0; r < s->regions && !s->parts; r++)
-		count += s->region[r].possible;
-	return count;
 }
 
 static void add_break(struct looking *l, struct switching_function *e, mpq_srcptr at)
@@ -433,19 +418,6 @@ static int *intervals_of(const struct switching *s, int region)
 	return interval;
 }
 
-int count_candidates(struct switching *s)
-{
-	const int limit = s->cached ? INT_MAX / s->segments : LIMIT_CANDIDATES;
-	int count = 1;
-	for (int i = 0; i < s->functions; i++) {
-		s->function[i].stride = count;
-		if (count > limit / (s->function[i].breaks + 1))
-			return 0;
-		count *= s->function[i].breaks + 1;
-	}
-	return count;
-}
-
 /* A guard is a breakpoint of its switching function; of a bounce one that stands twice, with the interval of rest
  * between. */
 static void meet_impact(struct looking *l, const struct impact *impact, mpq_ptr constant)
@@ -617,41 +589,4 @@ struct switching *regions_of_rows(struct building *b, int rows, int *row)
 	if (has_events(s))
 		resolve_friction(b, s);
 	return s;
-}
-
-/* ---- their systems ---- */
-
-static bool same_system(const struct linear *a, const struct linear *b)
-{
-	size_t n = (size_t)a->n, cells = n * n;
-	bool same = rationals_equal(cells, a->M, b->M) && rationals_equal(cells, a->C, b->C) &&
-		    rationals_equal(cells, a->K, b->K);
-	for (int l = 0; l < a->loads && same; l++)
-		for (int k = 0; k < a->load[l].columns && same; k++)
-			same = rationals_equal(n, a->load[l].force[k], b->load[l].force[k]);
-	for (int i = 0; i < a->inputs && same; i++)
-		for (int k = 0; k < 2 && same; k++)
-			same = rationals_equal(n, a->input[i].force[k], b->input[i].force[k]);
-	return same;
-}
-
-static bool same_rows(const struct switching *s, int a, int b)
-{
-	bool same = true;
-	for (int e = 0; e < s->functions && a != b; e++)
-		same = same && mpq_equal(s->function[e].shift[a], s->function[e].shift[b]) &&
-		       same_form(s->function[e].in[a], s->function[e].in[b]);
-	return same;
-}
-
-int add_system(struct switching *s, const struct linear *system, int segment, bool apart)
-{
-	for (int i = 0; i < s->systems && !apart; i++)
-		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
-			return i;
-	ENLARGE(s->system, (size_t)s->systems + 1);
-	ENLARGE(s->system_segment, (size_t)s->systems + 1);
-	s->system[s->systems] = *system;
-	s->system_segment[s->systems] = segment;
-	return s->systems++;
 }

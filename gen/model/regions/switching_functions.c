@@ -7,6 +7,10 @@
 #include "model/contacts/friction.h"
 #include "model/reads.h"
 
+#include <limits.h>
+
+enum { LIMIT_CANDIDATES = 6561 };      /* regions looked at, before those that cannot be are left out */
+
 /* ---- intervals and rates ---- */
 
 /* Where all of them are cached, of those beside the lowest the first that this switching function is in */
@@ -357,4 +361,17 @@ int regions_at_once(const struct switching *s)
 int segment_of_region(const struct switching *s, int region)
 {
 	return region / regions_at_once(s);
+}
+
+int count_candidates(struct switching *s)
+{
+	const int limit = s->cached ? INT_MAX / s->segments : LIMIT_CANDIDATES;
+	int count = 1;
+	for (int i = 0; i < s->functions; i++) {
+		s->function[i].stride = count;
+		if (count > limit / (s->function[i].breaks + 1))
+			return 0;
+		count *= s->function[i].breaks + 1;
+	}
+	return count;
 }
