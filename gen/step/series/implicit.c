@@ -214,3 +214,42 @@ void find_implicit(struct expansion *x)
 			find_gains(x, depends, late, i);
 	schedule(x);
 }
+
+/* ---- what a gain is of ---- */
+
+int place_of_gain(const struct sequence *s, int other)
+{
+	int place = 0;
+	while (place < s->gains && s->gain[place] != other)
+		place++;
+	return place < s->gains ? place : NONE;
+}
+
+/* Some of the newest of a term is that of another */
+static bool reads(const struct expansion *x, const struct sequence_term *term, int other)
+{
+	bool product = term->kind == TERM_PRODUCT, found = false;
+	for (int i = 0; i < (product ? 2 : term->kind == TERM_SEQUENCE); i++) {
+		int operand = i ? term->b : term->a;
+		const struct sequence *s = &x->sequence[operand];
+		found = found || (s->split ? place_of_gain(s, other) != NONE : operand == other);
+	}
+	return found;
+}
+
+const struct sequence_term *plain_term(const struct expansion *x, const struct sequence *s, int other)
+{
+	const struct sequence_term *only = NULL;
+	if (s->kind != SEQUENCE_SUM && s->kind != SEQUENCE_INTEGRAL)
+		return NULL;
+	for (int i = 0; i < s->terms; i++) {
+		const struct sequence_term *term = &s->term[i];
+		bool itself = term->kind == TERM_SEQUENCE && term->a == other && !x->sequence[other].split;
+		if (!reads(x, term, other))
+			continue;
+		if (!itself || only)
+			return NULL;
+		only = term;
+	}
+	return only;
+}

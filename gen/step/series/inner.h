@@ -32,6 +32,9 @@ int stage_factors(struct lines *l, const double *factor, int count);     /* like
 /* ---- implicit.c: how the newest coefficients enter the next ones ---- */
 
 void find_implicit(struct expansion *x);
+int  place_of_gain(const struct sequence *s, int other);     /* NONE: there is no such gain */
+/* The only term with this other is itself, with a number: its factor at each k; NULL: it is not so */
+const struct sequence_term *plain_term(const struct expansion *x, const struct sequence *s, int other);
 
 /* ---- sums.c: what is added up exactly, and its factors as numbers ---- */
 

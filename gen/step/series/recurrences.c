@@ -249,14 +249,9 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 
 static tape_ref provisional_ahead(struct recurrences *r, int sequence, int k);
 
-static struct multiplier number_at(const struct recurrences *r, int k)
-{
-	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, recurrence_staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
-}
-
 static tape_ref shifted(struct recurrences *r, const struct sequence *s, int k, part_of *part)
 {
-	struct multiplier factor = number_at(r, k + 1);
+	struct multiplier factor = recurrence_number_at(r, k + 1);
 	factor.number *= s->shifts ? s->exponent : 1;
 	return recurrence_scaled(r, factor, part(r, s->a, k + 1));
 }
@@ -413,14 +408,6 @@ static tape_ref solution(struct recurrences *r, const struct sequence *s, int k)
 /* ---- gains: derivatives of the k-th by the k-th of another, k >= 1: a number, or what follows from the first
  * coefficients. Of an integral, times k + 1 ---- */
 
-static int place_of_gain(const struct sequence *s, int other)
-{
-	int place = 0;
-	while (place < s->gains && s->gain[place] != other)
-		place++;
-	return place < s->gains ? place : NONE;
-}
-
 static tape_ref gain_ref(struct recurrences *r, int sequence, int other);
 
 static tape_ref own_gain(struct recurrences *r, int sequence, int place)
@@ -484,45 +471,6 @@ static tape_ref gain_ref(struct recurrences *r, int sequence, int other)
 	return s->kind == SEQUENCE_POWER ? tape_scaled(t, recurrence_rounded(s->exponent), a) : a;
 }
 
-/* Some of the newest of a term is that of another */
-static bool reads(const struct recurrences *r, const struct sequence_term *term, int other)
-{
-	bool product = term->kind == TERM_PRODUCT, found = false;
-	for (int i = 0; i < (product ? 2 : term->kind == TERM_SEQUENCE); i++) {
-		int operand = i ? term->b : term->a;
-		const struct sequence *s = sequence_of(r, operand);
-		found = found || (s->split ? place_of_gain(s, other) != NONE : operand == other);
-	}
-	return found;
-}
-
-/* The only term with this other is itself, with a number: its factor at each k */
-static const struct sequence_term *plain_term(const struct recurrences *r, const struct sequence *s, int other)
-{
-	const struct sequence_term *only = NULL;
-	if (s->kind != SEQUENCE_SUM && s->kind != SEQUENCE_INTEGRAL)
-		return NULL;
-	for (int i = 0; i < s->terms; i++) {
-		const struct sequence_term *term = &s->term[i];
-		bool itself = term->kind == TERM_SEQUENCE && term->a == other && !sequence_of(r, other)->split;
-		if (!reads(r, term, other))
-			continue;
-		if (!itself || only)
-			return NULL;
-		only = term;
-	}
-	return only;
-}
-
-/* 1/(k + 1) */
-static struct multiplier part_at(struct recurrences *r, int k)
-{
-	SCRATCH double *part = ARRAY(double, r->x->order + 1);
-	for (int i = 0; i <= r->x->order; i++)
-		part[i] = recurrence_rounded(1.0 / (i + 1));
-	return recurrence_factor_among(r, part, k);
-}
-
 /* early part + sum of gains times the k-th of the others, over k + 1 of an integral */
 static tape_ref joined(struct recurrences *r, int sequence, const struct sequence *s, int k)
 {
@@ -530,11 +478,11 @@ static tape_ref joined(struct recurrences *r, int sequence, const struct sequenc
 	tape_ref all = s->split ? early(r, sequence, k)
 				: made_of(r, sequence, s, k, early);
 	for (int i = 0; i < s->gains; i++) {
-		const struct sequence_term *only = plain_term(r, s, s->gain[i]);
+		const struct sequence_term *only = plain_term(r->x, s, s->gain[i]);
 		tape_ref latest = recurrence(r, s->gain[i], k);
 		if (latest == TAPE_NONE)
 			continue;
-		struct multiplier factor = s->kind == SEQUENCE_INTEGRAL ? part_at(r, k) : plain(1);
+		struct multiplier factor = s->kind == SEQUENCE_INTEGRAL ? recurrence_part_at(r, k) : plain(1);
 		all = plus(t, all, only ? recurrence_scaled(r, recurrence_factor_at(r, only, k), latest)
 					: times(t, latest, recurrence_scaled(r, factor, own_gain(r, sequence, i))));
 	}

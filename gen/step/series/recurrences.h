@@ -94,6 +94,8 @@ tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tap
 struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k);
 struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k);
 tape_ref recurrence_chain(struct tape *t, const struct list *list);
+struct multiplier recurrence_number_at(const struct recurrences *r, int k);    /* k */
+struct multiplier recurrence_part_at(struct recurrences *r, int k);            /* 1/(k + 1) */
 double recurrence_rounded(double value);
 
 /* ---- recurrences.c ---- */

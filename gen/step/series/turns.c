@@ -95,3 +95,16 @@ double recurrence_rounded(double value)
 	value = round_rational(exact);
 	return value;
 }
+
+struct multiplier recurrence_number_at(const struct recurrences *r, int k)
+{
+	return !in_loop(k) ? plain(k) : (struct multiplier){ 1, recurrence_staged(r, STAGE_NUMBER, NONE, NONE, k, 0) };
+}
+
+struct multiplier recurrence_part_at(struct recurrences *r, int k)
+{
+	SCRATCH double *part = ARRAY(double, r->x->order + 1);
+	for (int i = 0; i <= r->x->order; i++)
+		part[i] = recurrence_rounded(1.0 / (i + 1));
+	return recurrence_factor_among(r, part, k);
+}
