@@ -302,6 +302,15 @@ static void run_onto_files(const struct one *c)
 	free(path);
 }
 
+/* A list of equilibria goes to standard output alone. */
+static bool prints_alone(const struct one *c)
+{
+	for (int i = 0; i < c->arguments; i++)
+		if (strcmp(c->argument[i], "--equilibrium") == 0)
+			return true;
+	return false;
+}
+
 char *run_case(const struct one *c, bool to_stdout, bool onto_files)
 {
 	char *text;
@@ -316,7 +325,7 @@ char *run_case(const struct one *c, bool to_stdout, bool onto_files)
 	lay_out(c, in);
 	if (c->status != 1 || to_stdout)
 		run_to_stdout(c);
-	if (c->status == 1 && onto_files)
+	if (c->status == 1 && onto_files && !prints_alone(c))
 		run_onto_files(c);
 	empty(in);
 	fclose(told);
