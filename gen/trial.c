@@ -24,8 +24,9 @@ static void build_now(void *context)
 		model = model_reduce(model);
 	model = model ? model_truncate(model) : NULL;
 	model = model ? stepped_model(model, spec, &m->now) : NULL;
-	m->step = model ? step_build(model) : NULL;
-	if (!m->step || !find_requirements(model))
+	/* Requirements first: a step that stands aside, as `over` does, is built of a copy of the model. */
+	m->step = model && find_requirements(model) ? step_build(model) : NULL;
+	if (!m->step)
 		abandon();
 }
 

@@ -224,4 +224,9 @@ steps 0.1 "model far\ncoord x, y\ninit x = 1, y = 1\nx'' + x = 0\ny'' + 1e4*y = 
 result $? 'what is said is that it was measured'
 "$plgen" word.spec >again.c 2>log && cmp word.c again.c >>log
 result $? 'the same choice again'
+{ echo 'model clearance'; cat clearance.txt; printf 'step 0.1\nscheme taylor 12 over 3\nneed x within 1e-3 until 10\n'
+} >aside.spec
+"$plgen" aside.spec >aside.c 2>log && grep -q 'over 3 stands aside' log &&
+	grep -q 'measured [1-9].*at every sample' aside.c
+result $? 'a need where `over` stands aside'
 tap_end

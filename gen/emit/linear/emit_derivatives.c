@@ -138,10 +138,10 @@ void emit_derivative_declarations(const struct emitter *e)
 				"added to.  $n_gradient goes over n steps from s, with n rows of w or NULL, and room "
 				"for that many snapshots, 1 to PL_SNAPSHOTS; ds: the derivatives of s.  It returns how "
 				"many steps it has taken between them.";
-	const char *samples = !d->seeded ? "" : !e->ramps ? ", ub of each sample"
-			    : ", ub of each sample (before: of that at the start; in $n_gradient row 0 is of the one "
-			      "before the first step)";
-	say_comment(e, "", spell(e, backwards, spell(e, samples)));
+	const char *samples = !d->seeded ? ""
+			    : spell(e, e->ramps ? ", ub of each sample (before: of that at the start; in $n_gradient "
+						  "row 0 is of the one before the first step)" : ", ub of each sample");
+	say_comment(e, "", spell(e, backwards, samples));
 	announce(e, spell(e, "void   $n_back(const $n *s%s, const double *w, double lam[$N_STATES], "
 			     "double pb[$N_D]%s);", given_inputs(e) ? spell(e, ", const double u[$N_INPUTS]") : "",
 			  d->seeded ? ", double *ub, double *before" : ""), "a step from s");
