@@ -3,6 +3,7 @@
 # playground.sh BUILD: BUILD/playground.html, the generator in a page, for `make playground`. Its libraries are built
 # from Debian's sources for wasm32-wasi, once, in BUILD/playground; a source archive that apt does not get can be put
 # into BUILD/playground/src. What it takes: clang, lld, llvm, wasi-libc, libclang-rt-dev-wasm32.
+# MIRROR chooses another Debian.
 set -eu
 root=$(cd "$(dirname "$0")/../.." && pwd)
 build=$(cd "$1" && pwd)
@@ -37,7 +38,7 @@ archive() { ls "$place/src/$1"_*.orig.tar.* 2>/dev/null | head -n 1; }
 fetch() {
 	lists=$place/apt/$1
 	mkdir -p "$lists/partial"
-	echo "deb-src http://deb.debian.org/debian $1 main" >"$place/apt/$1.list"
+	echo "deb-src ${MIRROR:-http://deb.debian.org/debian} $1 main" >"$place/apt/$1.list"
 	options="-o Dir::Etc::sourcelist=$place/apt/$1.list -o Dir::Etc::sourceparts=/dev/null"
 	options="$options -o Dir::State::lists=$lists"
 	# shellcheck disable=SC2086
