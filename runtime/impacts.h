@@ -222,6 +222,12 @@ static PL_APART int interval_in(const pl_guards *m, int region, int expression)
     return region / stride_of(m, expression) % (m->breaks[expression] + 1);
 }
 
+/* [s] a piece in which no pole of a linear system turns far */
+static real piece_in(const pl_guards *m, int matrix)
+{
+    return m->h / (real)((uint32_t)1 << m->halvings[matrix]);
+}
+
 static int is_possible(const pl_guards *m, int region)
 {
     return matrix_in(m, region) >= 0;
@@ -399,8 +405,9 @@ static real least_speed(const pl_guards *m, const instant *at, real least)
         at->work[k] = sizes(n, matrix_now(m, &then) + k * n, at->x);
     }
     for (k = 0; k < m->impacts; k++) {
-        const real *speed = m->speed + (ptrdiff_t)k * n;
-        most = larger(most, sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work));
+        const real *speed = m->speed + (ptrdiff_t)k * n, press = sizes(n, speed, at->work);
+        const real piece = touches(m, at, k) ? m->h : piece_in(m, flying.matrix);
+        most = larger(most, sizes(n, speed, at->x) + piece * press);
     }
     return noise_of(most);
 }
@@ -490,7 +497,7 @@ static int rises(const pl_guards *m, int region, int k, const real *x, real *wor
 {
     const int n = m->size;
     return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guards.row + (ptrdiff_t)m->guard[k].row * n, x,
-                   m->h, work) > 0;
+                   piece_in(m, matrix_in(m, region)), work) > 0;
 }
 
 static int holds_in(const pl_guards *m, instant *at, int region, int expression)
@@ -533,7 +540,7 @@ static int heading_in(const pl_guards *m, instant *at, int region, const resting
 {
     (void)known;
     return heading(m->size, matrix_of(m->A, m, matrix_in(m, region)), m->row + one->expression * m->size, at->x,
-                   m->h, at->work);
+                   piece_in(m, matrix_in(m, region)), at->work);
 }
 
 static int is_pressed(const pl_guards *m, const instant *at, int impact)
