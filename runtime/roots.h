@@ -58,9 +58,10 @@ static inline int heading(int n, const real *A, const real *row, const real *x, 
 {
     real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
     int order, i;
+    pl_multiply(n, n, A, x, next);
     for (i = 0; i < n; i++) {
         y[i] = x[i];
-        terms[i] = magnitude(x[i]) + h * sizes(n, A + i * n, x);
+        terms[i] = magnitude(x[i]) + h * magnitude(next[i]);
     }
     for (order = 1; order <= 3; order++) {
         pl_multiply(n, n, A, y, next);
