@@ -65,7 +65,7 @@ typedef struct pl_events {
     const pl_series_switching *switching;
     int states;
     const int *watch; /* the column of each watch */
-    int holds;        /* number of constraints, at most 32 */
+    int holds;        /* number of constraints, at most 64 */
     const pl_hold *hold;
     const PL_REAL *back; /* holds x states: correction of the states for a velocity of 1, which is subtracted */
     int impacts;         /* at most 32, in the order in which they act at one instant */

@@ -32,10 +32,10 @@ bool any_of(const bool *flag, int count);
 /* What a remainder, an operator, is handed in a step: samples at its start, their slopes [1/s] */
 const char *samples_of_step(const struct emitter *e);
 /* A call at a node of the step, and one in the outputs, into `left` */
-const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *left);
+const char *remainder_of_step(const struct emitter *e, int node, const char *state, const char *remainder);
 const char *remainder_of_outputs(const struct emitter *e);
-/* Does an output read an acceleration that the remainder acts on? */
 bool is_row_of_regions(const struct model *model, int coord); /* its highest derivative, where a contact may rest */
+/* Does an output read an acceleration that the remainder acts on? */
 bool reads_force_columns(const struct model *model);
 void emit_remainder(const struct emitter *e);                      /* and of a schedule the choice of an operator */
 

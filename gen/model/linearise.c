@@ -318,7 +318,9 @@ static const char *name_of_itself(const struct linearising *l, const char *name)
 	const struct model *model = l->b->model;
 	for (int i = 0; i < model->n; i++) {
 		const size_t own = strlen(model->names.coord[i]);
-		const char *behind = strncmp(model->names.coord[i], name, own) == 0 ? name + own : "none";
+		if (strncmp(model->names.coord[i], name, own) != 0)
+			continue;
+		const char *behind = name + own;
 		const size_t primes = strspn(behind, "'");
 		if (primes == strlen(behind) && !(l->tangent && l->tangent->follows[primes < 2 ? primes : 2][i].slope))
 			return format("%s%s", coordinate_name(l, i), behind);

@@ -486,7 +486,7 @@ static void check_start(void *context)
 		constant_value(&p->b->collector, guard, by);
 	if (nearest_double(by) > 0x1p-40)
 		say_warning(p->impact->when->at,
-			    "it acts once that has ended: what stands first comes up to the second",
+			    "it acts when the first stands before its gap again and comes up to it",
 			    "this stop is passed by %s at the start", shortest(nearest_double(by)));
 }
 

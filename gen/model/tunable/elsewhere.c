@@ -19,7 +19,8 @@ static void set_value(mpq_ptr value, int index)
 	mpq_canonicalize(value);
 }
 
-/* Related by nothing; or near + 2^-40 |near| of that: what has a sign there, or an order, keeps it */
+/* Related by nothing; or near + 2^-40 |near| of that, on the side that a range leaves: what has a sign there, or an
+ * order, keeps it */
 static mpq_t *values_at(const struct elsewhere *s, int place)
 {
 	enum { APART = 1 << 20 };   /* more than there are params */
@@ -34,6 +35,9 @@ static mpq_t *values_at(const struct elsewhere *s, int place)
 			mpq_set_ui(unit, 1, 1);
 		mpq_div_2exp(unit, unit, 40);
 		mpq_mul(values[k], values[k], unit);
+		const struct param_range *range = range_of_param(s->model, s->tuning->param[k].symbol);
+		if (range && mpq_equal(range->high, s->near[k]))
+			mpq_neg(values[k], values[k]);
 		mpq_add(values[k], values[k], s->near[k]);
 	}
 	return values;
@@ -116,8 +120,10 @@ static mpq_ptr *keep(const struct elsewhere *s, mpq_t *all)
 static void look(struct elsewhere *s)
 {
 	s->values = values_at(s, s->places);
-	if (!silent_guard(build_there, s))
-		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model");
+	const char *why = refusal_of(build_there, s);
+	if (why)
+		error(s->tuning->param[0].at, NULL, "with other values of the tunable params this is no model%s%s",
+		      *why ? ": " : "", why);
 	for (int i = 0; i < s->differences; i++)
 		if (!s->difference[i].same(pattern(s), s->found))
 			report_difference(s, &s->difference[i]);
