@@ -34,7 +34,7 @@ static void decide(const pl_switching *m, const real *x, pl_contact *c, int belo
             continue;
         }
         if (!possible) {
-            sign = heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, 0, work);
+            sign = heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work);
             if (sign != 0) {
                 enter(m, c, c->region + ((sign > 0) - above) * w.stride);
             }

@@ -18,7 +18,7 @@ static void decide(const pl_guards *m, const real *x, pl_contact *c, real *work)
             -excess(m, c, w.i, w.at[w.interval], x, &noise) > noise) {
             continue;
         }
-        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, 0, work) > 0) {
+        if (heading(m->size, matrix_of(m->A, m, c->matrix), m->row + w.i * m->size, x, work) > 0) {
             enter(m, c, c->region + w.stride);
         }
     }

@@ -222,12 +222,6 @@ static PL_APART int interval_in(const pl_guards *m, int region, int expression)
     return region / stride_of(m, expression) % (m->breaks[expression] + 1);
 }
 
-/* [s] a piece in which no pole of a linear system turns far */
-static real piece_in(const pl_guards *m, int matrix)
-{
-    return m->h / (real)((uint32_t)1 << m->halvings[matrix]);
-}
-
 static int is_possible(const pl_guards *m, int region)
 {
     return matrix_in(m, region) >= 0;
@@ -405,11 +399,11 @@ static real least_speed(const pl_guards *m, const instant *at, real least)
         at->work[k] = sizes(n, matrix_now(m, &then) + k * n, at->x);
     }
     for (k = 0; k < m->impacts; k++) {
-        const real *speed = m->speed + (ptrdiff_t)k * n, press = sizes(n, speed, at->work);
-        const real piece = touches(m, at, k) ? m->h : piece_in(m, flying.matrix);
-        most = larger(most, sizes(n, speed, at->x) + piece * press);
+        if (touches(m, at, k)) {
+            most = larger(most, sizes(n, m->speed + (ptrdiff_t)k * n, at->work));
+        }
     }
-    return noise_of(most);
+    return m->h * noise_of(most);
 }
 
 static void jump(const pl_guards *m, instant *at, int k)
@@ -497,7 +491,7 @@ static int rises(const pl_guards *m, int region, int k, const real *x, real *wor
 {
     const int n = m->size;
     return heading(n, matrix_of(m->A, m, matrix_in(m, region)), m->guards.row + (ptrdiff_t)m->guard[k].row * n, x,
-                   piece_in(m, matrix_in(m, region)), work) > 0;
+                   work) > 0;
 }
 
 static int holds_in(const pl_guards *m, instant *at, int region, int expression)
@@ -540,7 +534,7 @@ static int heading_in(const pl_guards *m, instant *at, int region, const resting
 {
     (void)known;
     return heading(m->size, matrix_of(m->A, m, matrix_in(m, region)), m->row + one->expression * m->size, at->x,
-                   piece_in(m, matrix_in(m, region)), at->work);
+                   at->work);
 }
 
 static int is_pressed(const pl_guards *m, const instant *at, int impact)

@@ -52,16 +52,13 @@ static real noise_of(real terms)
     return 8 * REAL_EPSILON * terms;
 }
 
-/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding, where x came about within h, 0
- * where it is given: in a state that passes 0, rounding is that of the way there.  work: 4 n */
-static inline int heading(int n, const real *A, const real *row, const real *x, real h, real *work)
+/* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 n */
+static inline int heading(int n, const real *A, const real *row, const real *x, real *work)
 {
     real *y = work, *next = work + n, *terms = work + 2 * n, *next_terms = work + 3 * n, e, noise;
     int order, i;
-    pl_multiply(n, n, A, x, next);
     for (i = 0; i < n; i++) {
-        y[i] = x[i];
-        terms[i] = magnitude(x[i]) + h * magnitude(next[i]);
+        y[i] = terms[i] = x[i];
     }
     for (order = 1; order <= 3; order++) {
         pl_multiply(n, n, A, y, next);
