@@ -220,10 +220,8 @@ model() {
 	made ranking -v model="$1" "$folder/precision.csv"
 	numbers precision.csv
 	! there largest_step.csv ||
-		[ -z "$(made first -v where=model -v is="$1" -v wanted=model "$folder/largest_step.csv")" ] || {
-		echo '<h2><a href="stability.html#largest_step">The largest stable step</a></h2>'
-		table largest_step.csv "model=$1"
-	}
+		[ -z "$(made first -v where=model -v is="$1" -v wanted=model "$folder/largest_step.csv")" ] ||
+		echo '<p><a href="stability.html#largest_step">The largest stable step</a></p>'
 }
 
 index() {

@@ -422,7 +422,7 @@ eval write
 === precision: precision.csv matrix.csv narrow
 # For each model its error against time; on narrow screens without what is grey
 set ylabel 'largest error over the history, relative'
-set yrange [1e-16:10]; set ytics 1e-16,100,10; set mytics 2
+set yrange [1e-16:10]; set ytics 1e-16,100,10; set mytics 2; unset mxtics
 set xlabel "CPU time per output [µs], median"
 do for [m in first_words(csv)] {
 	name = 'precision_'.m

@@ -372,8 +372,8 @@ kernel() {
     chosen "kernel of $spec $*" || return 0
     what="-DHAS_INPUTS=1"
     {
-        "$plgen" --batch --prefix m "$@" -o m.c "$root/$spec" &&
-            "$plgen" --target openmp --prefix m "$@" "$root/$spec" >m_kernel.c &&
+        "$plgen" --batch --prefix m "$@" -o m.c "$(path_of "$spec")" &&
+            "$plgen" --target openmp --prefix m "$@" "$(path_of "$spec")" >m_kernel.c &&
             { ! grep -q 'M_INPUTS = 0' m.h || what=-DHAS_INPUTS=0; } &&
             { ! grep -q M_BATCH_FACTORS m.h || what="$what -DM_BATCH_FACTORED"; } &&
             { ! grep -q '^#define PL_FLOAT_ONLY' m.h || what="$what -DREAL_FLOAT"; } &&

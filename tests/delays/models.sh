@@ -9,12 +9,13 @@ made=$3
 work=$(mktemp -d "${TMPDIR:-/tmp}/delays.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 : >"$work/all"
+mkdir "$work/specs" && awk -v into="$work/specs/" -v names="$work/names" -f "$folder/../cases.awk" "$folder/specs.cases"
 add() {         # NAME SPEC EDIT OPTION ...
 	name=$1
 	spec=$2
 	edit=$3
 	shift 3
-	sed -e "$edit" "$folder/$spec.spec" >"$work/$name.spec"
+	sed -e "$edit" "$work/specs/$spec.spec" >"$work/$name.spec"
 	"$plgen" --prefix "$name" "$@" "$work/$name.spec" >>"$work/all" 2>"$work/said" ||
 		{ cat "$work/said" >&2; exit 1; }
 }

@@ -149,7 +149,7 @@ bundles 'regions' "$root/models/quarter_car_bumps.spec"
 bundles 'crossings and loads' "$root/models/gear1.spec"
 bundles 'friction' "$root/models/brake.spec"
 bundles 'impacts' "$root/models/bouncing_ball.spec"
-bundles 'delays' "$root/tests/delays/echo.spec"
+bundles 'delays' "$(path_of tests/delays/echo.spec)"
 bundles 'tunable' "$(path_of tests/tunable/changes.spec)"
 bundles 'many instances' "$root/models/quarter_car.spec" --batch
 bundles 'a remainder' "$root/models/beam4.spec" --scheme etdrk4
@@ -157,8 +157,8 @@ bundles 'series' "$root/models/pendulum.spec"
 bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
 bundles 'friction by series' "$(path_of tests/contacts/rubbed.spec)" --tolerance 1e-5
 bundles 'tunable regions' "$(path_of tests/tunable/regions/rubbing.spec)"
-bundles 'crossings by parts' "$root/tests/series_switching/gap_cubic.spec" --scheme etdrk4
-bundles 'crossings, where it is stiff or not' "$root/tests/series_switching/stop_cubic.spec" --scheme auto
+bundles 'crossings by parts' "$(path_of tests/series_switching/gap_cubic.spec)" --scheme etdrk4
+bundles 'crossings, where it is stiff or not' "$(path_of tests/series_switching/stop_cubic.spec)" --scheme auto
 
 # ---- names: of a model that is called as something in the runtime ----
 

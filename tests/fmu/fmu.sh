@@ -14,6 +14,7 @@ standard=${FMI_DIR:-$root/../shared/fmi}
 standard=$(cd "$standard" 2>/dev/null && pwd)
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 own=$root/tests/fmu
 models=$root/models
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wcast-qual -Werror'
@@ -349,7 +350,7 @@ one vanderpol_stiff "$models/vanderpol_stiff.spec" 3 ''
 one beam4 "$models/beam4.spec" 3 ''
 one brake "$models/brake.spec" 2 ''
 one brake "$models/brake.spec" 3 ''
-one gap_cubic "$root/tests/series_switching/gap_cubic.spec" 3 ''
+one gap_cubic "$(path_of tests/series_switching/gap_cubic.spec)" 3 ''
 one ramped "$own/ramped.spec" 3 ''
 one bouncing_ball "$models/bouncing_ball.spec" 3 ''
 one slider_crank "$models/slider_crank.spec" 2 ''
@@ -358,8 +359,8 @@ one cart_stops cart_stops.spec 3 ''
 one tuned "$root/tests/remainder/tuned.spec" 3 ''
 one gaps "$root/tests/remainder/tuned_gaps.spec" 3 ''
 one plant "$own/plant.spec" 3 '--real float'
-one echo "$root/tests/delays/echo.spec" 2 ''
-one stopped "$root/tests/delays/stopped.spec" 3 ''
+one echo "$(path_of tests/delays/echo.spec)" 2 ''
+one stopped "$(path_of tests/delays/stopped.spec)" 3 ''
 one bouncing_ball "$models/bouncing_ball.spec" 2 '--real float'
 one gear1 "$models/gear1.spec" 2 '--real float'
 one absorber "$own/absorber.spec" 3 '--real float --prefix absorber'

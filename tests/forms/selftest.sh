@@ -14,6 +14,7 @@ case $cases in /*) ;; *) cases=$PWD/$cases ;; esac
 here=$(cd "${0%/*}" && pwd) || exit 99
 . "$here/../run_cc.sh"
 . "$here/../tap.sh"
+. "$here/../cases.sh"
 runtime_archive "$root/runtime"
 
 # subjects, then subject FILE ... and values: what the self-test of each file returns, a line each, from one program
@@ -105,7 +106,8 @@ seen scs 'NAME_at at another time is seen' at 'static void subject_told(const su
 replayed() {
 	spec=$1
 	shift
-	"$plgen" --prefix subject --selftest "$@" "$root/$spec.spec" >good.c 2>log || { result 1 "$spec $*"; return; }
+	"$plgen" --prefix subject --selftest "$@" "$(path_of "$spec.spec")" >good.c 2>log ||
+		{ result 1 "$spec $*"; return; }
 	inputs=$(grep -q 'subject_step(subject \*s, ' good.c && echo ', u')
 	awk -v inputs="$inputs" '/^#include "selftest.h"/ { given = inputs == "" ? "" : ", const double *u"
 		print "static void subject_told(subject *s" given ") { subject_step(s" inputs ");"

@@ -11,6 +11,7 @@ case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 case $root in /*) ;; *) root=$PWD/$root ;; esac
 here=$root/tests/parts
 . "$root/tests/tap.sh"
+awk -f "$root/tests/cases.awk" "$here/specs.cases" >flats && cp "$here/stiffness.mtx" . || exit 99
 
 # names FILE: without banner; front.body as front_body
 names='front|rear|engine|flywheel|gearbox|prop|axle|wheels|n[0-9]+|left|right|one|two|a|b|m|n'
@@ -25,7 +26,7 @@ is_flat() {
     name=${name%.spec}
     shift
     {
-        "$plgen" "$@" "$root/$scene" >scene.c && "$plgen" "$@" "$here/${name}_flat.spec" >flat.c &&
+        "$plgen" "$@" "$root/$scene" >scene.c && "$plgen" "$@" "${name}_flat.spec" >flat.c &&
             names scene.c >scene && names flat.c >flat && [ "$(wc -l <flat)" -gt 100 ] && diff flat scene
     } >log 2>&1
     result $? "$name${*:+ $*}: as in one text"
@@ -105,7 +106,7 @@ done
 cp "$root"/models/*.spec . && cp "$here"/*.spec . || exit 99
 is_needed() {
     { cat "$1.spec" && echo "need $2"; } >needed.spec
-    { cat "$here/$1_flat.spec" && echo "need $2" | sed 's/\./_/g'; } >needed_flat.spec
+    { cat "$1_flat.spec" && echo "need $2" | sed 's/\./_/g'; } >needed_flat.spec
     {
         "$plgen" needed.spec >scene.c && "$plgen" needed_flat.spec >flat.c && grep ' certified ' scene.c &&
             names scene.c >scene && names flat.c >flat && [ "$(wc -l <flat)" -gt 60 ] && diff flat scene

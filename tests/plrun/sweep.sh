@@ -5,6 +5,7 @@
 #
 #     sweep.sh PLRUN PLGEN SOURCE_ROOT
 . "${0%/*}/begin.sh"
+. "$root/tests/cases.sh"
 cat >car.spec <<'X'
 model car
 param m = 300, k = 18000, c = 1200, mw = 30, kt = 150000
@@ -250,7 +251,7 @@ events() {
 events 'friction' "$models/stick_slip.spec" 3 F=3 --until 3
 events 'impacts' "$models/bouncing_ball.spec" 2 e=0.5 --until 3
 awk 'BEGIN { print "u"; for (i = 0; i < 40; i++) print i % 7 }' >held.csv
-events 'delays' "$root/tests/delays/echo.spec" 3 d=0.35 --input held.csv
+events 'delays' "$(path_of tests/delays/echo.spec)" 3 d=0.35 --input held.csv
 
 # two processes, where there is an mpirun and plrun takes part
 mpi='mpirun --allow-run-as-root --oversubscribe -n 2'

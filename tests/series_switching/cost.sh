@@ -9,6 +9,7 @@ source=$(realpath "$2")
 work=$(mktemp -d "${TMPDIR:-/tmp}/cost.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
+awk -f "$source/tests/cases.awk" "$source/tests/series_switching/specs.cases" >names
 cat >drive.c <<'END'
 #include "m.h"
 #include <stdlib.h>
@@ -32,10 +33,10 @@ instructions() {
 
 # model NAME SMOOTH CROSSINGS: its step with and without the look, its crossing
 model() {
-	sed "s/^model .*/model m/; s/^scheme.*//; $2" "$source/tests/series_switching/$1.spec" >m.spec
+	sed "s/^model .*/model m/; s/^scheme.*//; $2" "$1.spec" >m.spec
 	plain=$(instructions 6000)
 	plain_twice=$(instructions 12000)
-	sed 's/^model .*/model m/; s/^scheme.*//' "$source/tests/series_switching/$1.spec" >m.spec
+	sed 's/^model .*/model m/; s/^scheme.*//' "$1.spec" >m.spec
 	cut=$(instructions 6000)
 	cut_twice=$(instructions 12000)
 	echo "| \`$1\` | $(((plain_twice - plain) / 6000)) | $(((cut_twice - cut) / 6000)) | \
