@@ -177,6 +177,7 @@ struct fmu *fmu_new(const struct step *step, int version, const char *code, cons
 	add_text(f, format("sources/%s", f->source[1]), code);
 	add_text(f, format("sources/%s", f->source[0]), runtime_text(f->source[0]));
 	add_text(f, format("sources/%s", face), runtime_text(face));
+	add_text(f, "sources/fmi.h", runtime_text("fmi.h"));
 	add_text(f, "sources/plfmu.h", runtime_text("plfmu.h"));
 	return f;
 }

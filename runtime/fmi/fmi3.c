@@ -5,37 +5,25 @@
 
 #include "fmi3.h"
 
-static fmi3Status status_of(enum fmu_result result)
-{
-    return result == FMU_OK ? fmi3OK : result == FMU_WARNING ? fmi3Warning : fmi3Error;
-}
+#define FMI(name) FMI3(name)
+#define FMI_EXPORT FMI3_Export
+#define FMI_STATE(before, after) FMI3(before##FMUState##after)
+#define FMI_DESERIALIZE FMI3(DeserializeFMUState)
+#define FMI_TYPE(name) fmi3##name
+#define FMI_NAME(function) "fmi3" #function
+typedef fmi3Instance fmi_instance;
+typedef fmi3FMUState fmi_saved;
+#include "fmi.h"
 
 static void log_message(fmu_instance *i, enum fmu_result result, const char *text)
 {
     const fmi3LogMessageCallback callback = (fmi3LogMessageCallback)i->callback;
     if (callback) {
-        callback(i->environment, status_of(result),
-                 result == FMU_WARNING ? fmu_category_warning : fmu_category_error, text);
+        callback(i->environment, status_of(result), category_of(result), text);
     }
 }
 
-static fmi3Status absent(fmi3Instance instance, const char *function)
-{
-    return status_of(fmu_absent((fmu_instance *)instance, function));
-}
-
 /* ---- creation ---- */
-
-FMI3_Export const char *FMI3(GetVersion)(void)
-{
-    return fmi3Version;
-}
-
-FMI3_Export fmi3Status FMI3(SetDebugLogging)(fmi3Instance instance, fmi3Boolean loggingOn, size_t nCategories,
-    const fmi3String categories[])
-{
-    return instance ? status_of(fmu_logging((fmu_instance *)instance, loggingOn, nCategories, categories)) : fmi3Error;
-}
 
 /* No instance says yet which categories the importer wants to see: an error is always logged. */
 static fmi3Instance refused(fmi3LogMessageCallback logMessage, fmi3InstanceEnvironment environment, const char *why)
@@ -53,10 +41,6 @@ FMI3_Export fmi3Instance FMI3(InstantiateCoSimulation)(fmi3String instanceName, 
     fmi3LogMessageCallback logMessage, fmi3IntermediateUpdateCallback intermediateUpdate)
 {
     fmu_instance *i;
-    (void)resourcePath;
-    (void)visible;
-    (void)requiredIntermediateVariables;
-    (void)intermediateUpdate;
     if (eventModeUsed) {
         return refused(logMessage, instanceEnvironment, "this FMU has no event mode");
     }
@@ -79,11 +63,6 @@ FMI3_Export fmi3Instance FMI3(InstantiateModelExchange)(fmi3String instanceName,
     fmi3String instantiationToken, fmi3String resourcePath, fmi3Boolean visible, fmi3Boolean loggingOn,
     fmi3InstanceEnvironment instanceEnvironment, fmi3LogMessageCallback logMessage)
 {
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
     return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
 }
 
@@ -93,20 +72,7 @@ FMI3_Export fmi3Instance FMI3(InstantiateScheduledExecution)(fmi3String instance
     fmi3ClockUpdateCallback clockUpdate, fmi3LockPreemptionCallback lockPreemption,
     fmi3UnlockPreemptionCallback unlockPreemption)
 {
-    (void)instanceName;
-    (void)instantiationToken;
-    (void)resourcePath;
-    (void)visible;
-    (void)loggingOn;
-    (void)clockUpdate;
-    (void)lockPreemption;
-    (void)unlockPreemption;
     return refused(logMessage, instanceEnvironment, "this FMU is for co-simulation only");
-}
-
-FMI3_Export void FMI3(FreeInstance)(fmi3Instance instance)
-{
-    free(instance);
 }
 
 /* ---- from mode to mode ---- */
@@ -116,34 +82,11 @@ FMI3_Export fmi3Status FMI3(EnterInitializationMode)(fmi3Instance instance, fmi3
 {
     fmu_instance *i = (fmu_instance *)instance;
     enum fmu_result result;
-    (void)toleranceDefined;
-    (void)tolerance;
-    (void)stopTimeDefined;
-    (void)stopTime;
     if (!i) {
         return fmi3Error;
     }
     result = fmu_enter(i, "fmi3EnterInitializationMode");
     return status_of(result == FMU_OK ? fmu_initialize(i, startTime) : result);
-}
-
-FMI3_Export fmi3Status FMI3(ExitInitializationMode)(fmi3Instance instance)
-{
-    return instance ? status_of(fmu_leave((fmu_instance *)instance, "fmi3ExitInitializationMode")) : fmi3Error;
-}
-
-FMI3_Export fmi3Status FMI3(Terminate)(fmi3Instance instance)
-{
-    return instance ? status_of(fmu_end((fmu_instance *)instance, "fmi3Terminate")) : fmi3Error;
-}
-
-FMI3_Export fmi3Status FMI3(Reset)(fmi3Instance instance)
-{
-    if (!instance) {
-        return fmi3Error;
-    }
-    fmu_begin(&((fmu_instance *)instance)->data);
-    return fmi3OK;
 }
 
 /* ---- values: all are Float64 ---- */
@@ -200,7 +143,6 @@ FMI3_Export fmi3Status FMI3(DoStep)(fmi3Instance instance, fmi3Float64 currentCo
     fmu_instance *i = (fmu_instance *)instance;
     fmi3Status status;
     bool early;
-    (void)noSetFMUStatePriorToCurrentPoint;
     if (!i) {
         return fmi3Error;
     }
@@ -220,70 +162,12 @@ FMI3_Export fmi3Status FMI3(DoStep)(fmi3Instance instance, fmi3Float64 currentCo
     return status;
 }
 
-/* ---- saved states ---- */
+/* ---- what this FMU does not offer: no variables of other types, no events (fmi.h), clocks, configuration ---- */
 
-FMI3_Export fmi3Status FMI3(GetFMUState)(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    return instance && FMUState ? status_of(fmu_save((fmu_instance *)instance, FMUState)) : fmi3Error;
-}
-
-FMI3_Export fmi3Status FMI3(SetFMUState)(fmi3Instance instance, fmi3FMUState FMUState)
-{
-    return instance ? status_of(fmu_restore((fmu_instance *)instance, FMUState)) : fmi3Error;
-}
-
-FMI3_Export fmi3Status FMI3(FreeFMUState)(fmi3Instance instance, fmi3FMUState *FMUState)
-{
-    (void)instance;
-    if (FMUState) {
-        free(*FMUState);
-        *FMUState = NULL;
-    }
-    return fmi3OK;
-}
-
-FMI3_Export fmi3Status FMI3(SerializedFMUStateSize)(fmi3Instance instance, fmi3FMUState FMUState,
-    size_t *size)
-{
-    (void)FMUState;
-    if (!instance || !size) {
-        return fmi3Error;
-    }
-    *size = sizeof(fmu_saved);
-    return fmi3OK;
-}
-
-FMI3_Export fmi3Status FMI3(SerializeFMUState)(fmi3Instance instance, fmi3FMUState FMUState,
-    fmi3Byte serializedState[], size_t size)
-{
-    return instance ? status_of(fmu_serialize((fmu_instance *)instance, FMUState, serializedState, size)) : fmi3Error;
-}
-
-FMI3_Export fmi3Status FMI3(DeserializeFMUState)(fmi3Instance instance, const fmi3Byte serializedState[],
-    size_t size, fmi3FMUState *FMUState)
-{
-    if (!instance || !FMUState) {
-        return fmi3Error;
-    }
-    return status_of(fmu_deserialize((fmu_instance *)instance, serializedState, size, FMUState));
-}
-
-/* ---- what this FMU does not offer: no variables of other types, no events, clocks, configuration ---- */
-
-/* Such a function reads its instance alone. */
-#ifdef __GNUC__
-#pragma GCC diagnostic ignored "-Wunused-parameter"
-#endif
-
-#define ABSENT(function, parameters) \
-    FMI3_Export fmi3Status FMI3(function) parameters \
-    { \
-        return absent(instance, "fmi3" #function); \
-    }
 #define ABSENT_TYPE(type) \
-    ABSENT(Get##type, (fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+    ABSENT(Get##type, (fmi3Instance c, const fmi3ValueReference valueReferences[], \
                        size_t nValueReferences, fmi3##type values[], size_t nValues)) \
-    ABSENT(Set##type, (fmi3Instance instance, const fmi3ValueReference valueReferences[], \
+    ABSENT(Set##type, (fmi3Instance c, const fmi3ValueReference valueReferences[], \
                        size_t nValueReferences, const fmi3##type values[], size_t nValues))
 
 ABSENT_TYPE(Float32)
@@ -297,56 +181,47 @@ ABSENT_TYPE(Int64)
 ABSENT_TYPE(UInt64)
 ABSENT_TYPE(Boolean)
 ABSENT_TYPE(String)
-ABSENT(EnterEventMode, (fmi3Instance instance))
-ABSENT(GetBinary, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(GetBinary, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                    size_t valueSizes[], fmi3Binary values[], size_t nValues))
-ABSENT(GetClock, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(GetClock, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                   fmi3Clock values[]))
-ABSENT(SetBinary, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetBinary, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                    const size_t valueSizes[], const fmi3Binary values[], size_t nValues))
-ABSENT(SetClock, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetClock, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                   const fmi3Clock values[]))
-ABSENT(GetNumberOfVariableDependencies, (fmi3Instance instance, fmi3ValueReference valueReference,
+ABSENT(GetNumberOfVariableDependencies, (fmi3Instance c, fmi3ValueReference valueReference,
                                          size_t *nDependencies))
-ABSENT(GetVariableDependencies, (fmi3Instance instance, fmi3ValueReference dependent,
+ABSENT(GetVariableDependencies, (fmi3Instance c, fmi3ValueReference dependent,
                                  size_t elementIndicesOfDependent[], fmi3ValueReference independents[],
                                  size_t elementIndicesOfIndependents[], fmi3DependencyKind dependencyKinds[],
                                  size_t nDependencies))
-ABSENT(EnterConfigurationMode, (fmi3Instance instance))
-ABSENT(ExitConfigurationMode, (fmi3Instance instance))
-ABSENT(GetIntervalDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(EnterConfigurationMode, (fmi3Instance c))
+ABSENT(ExitConfigurationMode, (fmi3Instance c))
+ABSENT(GetIntervalDecimal, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                             fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[]))
-ABSENT(GetIntervalFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(GetIntervalFraction, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                              fmi3UInt64 counters[], fmi3UInt64 resolutions[], fmi3IntervalQualifier qualifiers[]))
-ABSENT(GetShiftDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(GetShiftDecimal, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                          fmi3Float64 shifts[]))
-ABSENT(GetShiftFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(GetShiftFraction, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           fmi3UInt64 counters[], fmi3UInt64 resolutions[]))
-ABSENT(SetIntervalDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetIntervalDecimal, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                             const fmi3Float64 intervals[]))
-ABSENT(SetIntervalFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetIntervalFraction, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                              const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]))
-ABSENT(SetShiftDecimal, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetShiftDecimal, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                          const fmi3Float64 shifts[]))
-ABSENT(SetShiftFraction, (fmi3Instance instance, const fmi3ValueReference valueReferences[], size_t nValueReferences,
+ABSENT(SetShiftFraction, (fmi3Instance c, const fmi3ValueReference valueReferences[], size_t nValueReferences,
                           const fmi3UInt64 counters[], const fmi3UInt64 resolutions[]))
-ABSENT(EvaluateDiscreteStates, (fmi3Instance instance))
-ABSENT(UpdateDiscreteStates, (fmi3Instance instance, fmi3Boolean *discreteStatesNeedUpdate,
+ABSENT(EvaluateDiscreteStates, (fmi3Instance c))
+ABSENT(UpdateDiscreteStates, (fmi3Instance c, fmi3Boolean *discreteStatesNeedUpdate,
                               fmi3Boolean *terminateSimulation, fmi3Boolean *nominalsOfContinuousStatesChanged,
                               fmi3Boolean *valuesOfContinuousStatesChanged, fmi3Boolean *nextEventTimeDefined,
                               fmi3Float64 *nextEventTime))
-ABSENT(EnterContinuousTimeMode, (fmi3Instance instance))
-ABSENT(CompletedIntegratorStep, (fmi3Instance instance, fmi3Boolean noSetFMUStatePriorToCurrentPoint,
-                                 fmi3Boolean *enterEventMode, fmi3Boolean *terminateSimulation))
-ABSENT(SetTime, (fmi3Instance instance, fmi3Float64 time))
-ABSENT(SetContinuousStates, (fmi3Instance instance, const fmi3Float64 continuousStates[], size_t nContinuousStates))
-ABSENT(GetContinuousStateDerivatives, (fmi3Instance instance, fmi3Float64 derivatives[], size_t nContinuousStates))
-ABSENT(GetEventIndicators, (fmi3Instance instance, fmi3Float64 eventIndicators[], size_t nEventIndicators))
-ABSENT(GetContinuousStates, (fmi3Instance instance, fmi3Float64 continuousStates[], size_t nContinuousStates))
-ABSENT(GetNominalsOfContinuousStates, (fmi3Instance instance, fmi3Float64 nominals[], size_t nContinuousStates))
-ABSENT(GetNumberOfEventIndicators, (fmi3Instance instance, size_t *nEventIndicators))
-ABSENT(GetNumberOfContinuousStates, (fmi3Instance instance, size_t *nContinuousStates))
-ABSENT(EnterStepMode, (fmi3Instance instance))
-ABSENT(GetOutputDerivatives, (fmi3Instance instance, const fmi3ValueReference valueReferences[],
+ABSENT(GetContinuousStateDerivatives, (fmi3Instance c, fmi3Float64 derivatives[], size_t nContinuousStates))
+ABSENT(GetNumberOfEventIndicators, (fmi3Instance c, size_t *nEventIndicators))
+ABSENT(GetNumberOfContinuousStates, (fmi3Instance c, size_t *nContinuousStates))
+ABSENT(EnterStepMode, (fmi3Instance c))
+ABSENT(GetOutputDerivatives, (fmi3Instance c, const fmi3ValueReference valueReferences[],
                               size_t nValueReferences, const fmi3Int32 orders[], fmi3Float64 values[], size_t nValues))
-ABSENT(ActivateModelPartition, (fmi3Instance instance, fmi3ValueReference clockReference, fmi3Float64 activationTime))
+ABSENT(ActivateModelPartition, (fmi3Instance c, fmi3ValueReference clockReference, fmi3Float64 activationTime))

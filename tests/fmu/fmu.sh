@@ -61,6 +61,7 @@ cat >expected <<'END'
 documentation/licenses/license.txt
 modelDescription.xml
 sources/buildDescription.xml
+sources/fmi.h
 sources/fmi3.c
 sources/fmi3.h
 sources/fmu_model.h
