@@ -21,6 +21,11 @@ merging() {
 	[ -n "${LONG:-}${MERGE:-}" ]
 }
 
+# seeds FIRST COUNT: so many from FIRST on, STRIDE in the environment apart
+seeds() {
+	seq "$1" "${STRIDE:-1}" $(($1 + $2 * ${STRIDE:-1} - 1))
+}
+
 # chosen NAME: whether it is one of those that CASE asks for
 chosen() {
 	case $1 in

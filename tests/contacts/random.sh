@@ -19,7 +19,7 @@ kinds="$5 $6 $7 $8 $((wild % 3))"
 changes=$8
 shift 9
 first=$1
-last=$((first + $2))
+many=$2
 tuned=${3:-}
 seconds=10
 [ $wild -ne 2 ] || seconds=4
@@ -83,8 +83,7 @@ one() {
 	fi
 }
 
-seed=$first
-while [ $seed -lt $last ]; do
+for seed in $(seeds $first $many); do
 	name="$(echo "$kinds" | tr ' ' '_')_$seed"
 	if [ $changes -gt 0 ]; then             # of which some are at the end of a step
 		set -- $((100 * finer)) $((250 * finer)) $((500 * finer)) $((1000 * finer)) $((2000 * finer))
@@ -103,9 +102,8 @@ while [ $seed -lt $last ]; do
 		one "${name}_100000" 100000 2e-11 double        # each rounds
 		one "${name}_float" 400 1e-4 float
 	fi
-	seed=$((seed + 1))
 done
 touch all
-echo "# $decides runs of $((last - first)) scenes decide"
+echo "# $decides runs of $many scenes decide"
 awk '{ n += $2; if ($5 + 0 > w) w = $5 + 0 } END { print "#", n + 0, "events, worst state", w + 0 }' all
 tap_end

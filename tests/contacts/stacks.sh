@@ -12,7 +12,8 @@ plgen=$(realpath "$1")
 stacks=$(realpath "$2")
 stands=$(realpath "$3")
 source=$(realpath "$4")
-seeds=$(for first in $5; do seq "$first" $((first + $6 - 1)); done)
+firsts=$5
+many=$6
 shift 6
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
@@ -66,7 +67,7 @@ stands_up() {
 	./stands $digits 2 >>log 2>&1
 }
 
-for seed in $seeds; do
+for seed in $(for first in $firsts; do seeds "$first" "$many"; done); do
 	variant=$1                              # the next one comes first the next time
 	shift
 	set -- "$@" $variant

@@ -12,8 +12,7 @@ source=$(realpath "$4")
 kinds="$5 $6 $7 $8 0"
 shift 8
 first=$1
-shift
-last=$((first + $1))
+many=$2
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 
@@ -30,12 +29,10 @@ tested() {
 	$run_cc -I. -I"$source/runtime" -o tested main.c scene.c $PLRT -lm >log 2>&1 && ./tested
 }
 
-seed=$first
 decides=0
-while [ $seed -lt $last ]; do
+for seed in $(seeds $first $many); do
 	name="$(echo "$kinds" | tr ' ' '_')_$seed"
 	if ! chosen "$name" || ! $truth $kinds $seed 4 400 23 scene.spec found.txt; then
-		seed=$((seed + 1))
 		continue
 	fi
 	decides=$((decides + 1))
@@ -47,7 +44,6 @@ while [ $seed -lt $last ]; do
 		[ "$value" = none ] || awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 == v && v < 1000) }'
 		result $? "$name: selftest in $real"
 	done
-	seed=$((seed + 1))
 done
-echo "# $decides of $((last - first)) scenes decide"
+echo "# $decides of $many scenes decide"
 tap_end

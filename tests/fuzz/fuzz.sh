@@ -1,16 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 #
-# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD CASES: mutated specs FIRST to FIRST+COUNT-1 through PLGEN (built with
-# sanitizers), as TAP, one line for each hundred. They are made from the specs in the folder GOOD (drawn more often) and
-# those of the cases of ../errors that are no longer than people write them. What fails is kept if KEEP names a folder.
-# With CHECK_C (a compiler and its options) the C is compiled as well. Every finding belongs into ../errors as a case of
-# its own.
+# fuzz.sh PLGEN MUTATE FIRST COUNT GOOD CASES: COUNT mutated specs from FIRST on, STRIDE in the environment apart,
+# through PLGEN (built with sanitizers), as TAP, one line for each hundred. They are made from the specs in the folder
+# GOOD (drawn more often) and those of the cases of ../errors that are no longer than people write them. What fails is
+# kept if KEEP names a folder. With CHECK_C (a compiler and its options) the C is compiled as well. Every finding
+# belongs into ../errors as a case of its own.
 set -u
 plgen=$1
 mutate=$2
 first=$3
-count=$4
+stride=${STRIDE:-1}
+past=$(($3 + $4 * stride))
 good=$5
 cases=$6
 block=100
@@ -29,7 +30,7 @@ if ! command -v timeout > "$work/path" 2>&1; then
 fi
 bad=$work/bad
 mkdir "$bad" && "$cases" --write "$bad" && find "$bad" -name '*.spec' -size +20k -exec rm '{}' + || exit 1
-echo "1..$(((count + block - 1) / block))"
+echo "1..$((($4 + block - 1) / block))"
 
 check()         # STATUS: prints what is wrong
 {
@@ -85,10 +86,10 @@ done
 seed=$first
 number=0
 broken=0
-while [ "$seed" -lt $((first + count)) ]; do
+while [ "$seed" -lt "$past" ]; do
 	number=$((number + 1))
-	end=$((seed + block))
-	[ "$end" -gt $((first + count)) ] && end=$((first + count))
+	end=$((seed + block * stride))
+	[ "$end" -gt "$past" ] && end=$past
 	from=$seed
 	failed=0
 	: > "$work/complaints"
@@ -107,7 +108,7 @@ while [ "$seed" -lt $((first + count)) ]; do
 			[ -n "${KEEP:-}" ] && cp "$work/in.spec" "$KEEP/$seed.spec"
 		fi
 		: > "$work/cc"
-		seed=$((seed + 1))
+		seed=$((seed + stride))
 	done
 	if [ "$failed" -eq 0 ]; then
 		echo "ok $number - seeds $from to $((end - 1))"

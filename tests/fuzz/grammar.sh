@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with CASE,
-# MERGE=1 or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of the seeds
-# FIRST to FIRST+COUNT-1, as TAP: a line for each spec of the corpus, and for each block of seeds. PLGEN is built with
-# sanitizers; it makes every third of them, and the plain one, beside it without `_sanitized`, the others. What is
-# emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1 all have
-# sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only with a
-# message of refusals.list.
+# MERGE=1 or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of COUNT
+# seeds from FIRST on, STRIDE apart, as TAP: a line for each spec of the corpus, and for each block of seeds. PLGEN is
+# built with sanitizers; it makes every third of them, and the plain one, beside it without `_sanitized`, the others.
+# What is emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1
+# all have sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only
+# with a message of refusals.list.
 set -u
 absolute() {
 	case $1 in
@@ -19,7 +19,8 @@ grammar=$(absolute "$2")
 folder=$(dirname "$(absolute "$3")")
 source=$(absolute "$4")
 first=$5
-count_of_seeds=$6
+stride=${STRIDE:-1}
+past=$((first + $6 * stride))
 corpus=${7:-}
 [ -z "$corpus" ] || corpus=$(absolute "$corpus")
 keep=${KEEP:-}
@@ -101,9 +102,9 @@ if [ -n "$corpus" ]; then
 fi
 
 seed=$first
-while [ "$seed" -lt $((first + count_of_seeds)) ]; do
-	end=$((seed + block))
-	[ "$end" -gt $((first + count_of_seeds)) ] && end=$((first + count_of_seeds))
+while [ "$seed" -lt "$past" ]; do
+	end=$((seed + block * stride))
+	[ "$end" -gt "$past" ] && end=$past
 	from=$seed
 	bad=0
 	: >log
@@ -117,10 +118,10 @@ while [ "$seed" -lt $((first + count_of_seeds)) ]; do
 			made) made=$((made + 1)) ;;
 			refused) refused=$((refused + 1)) ;;
 		esac
-		seed=$((seed + 1))
+		seed=$((seed + stride))
 	done
 	batch_build
-	run_all "$(seq -f 's%.0f' "$from" $((end - 1)))"
+	run_all "$(seq -f 's%.0f' "$from" "$stride" $((end - 1)))"
 	seed=$from
 	while [ "$seed" -lt "$end" ]; do
 		id=s$seed
@@ -128,7 +129,7 @@ while [ "$seed" -lt $((first + count_of_seeds)) ]; do
 			bad=$((bad + 1))
 			keep_it "$id" "$seed" "$id.spec"
 		fi
-		seed=$((seed + 1))
+		seed=$((seed + stride))
 	done
 	result "$bad" "seeds $from to $((end - 1))"
 done

@@ -3,7 +3,7 @@
 # Random models with needs (random.awk): what is emitted is compiled and run, and at every sample up to the end of the
 # need its output is within the bound of the exact one, which --solution gives from residues, correctly rounded. What
 # is certified is at most three times the largest error there is, in the median one and a half times.
-# needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds
+# needs.sh PLGEN HERE RUNTIME FIRST LAST: those of these seeds, STRIDE in the environment apart
 # needs.sh PLGEN HERE RUNTIME changes: changes.spec, whose load changes its formula; and that its C, which is certified
 # as it is written, refuses a compiler that may contract products
 # needs.sh PLGEN HERE RUNTIME drivetrain: models/drivetrain.spec, a scene of parts, with a need
@@ -22,7 +22,7 @@ case $first in
 	beam) ;;
 	changes) seeds=changes ;;
 	drivetrain) seeds=drivetrain; cp "$models"/*.spec . ;;
-	*) seeds=$(seq "$first" "$last") ;;
+	*) seeds=$(seq "$first" "${STRIDE:-1}" "$last") ;;
 esac
 for seed in $seeds; do
 	if [ "$seed" = beam ]; then

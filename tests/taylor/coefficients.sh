@@ -12,8 +12,8 @@ absolute() {
 plgen=$(absolute "$1")
 drawn_series=$(absolute "$2")
 source=$(absolute "$3")
-seed=$4
-end=$(($4 + $5))
+first=$4
+many=$5
 . "$source/tests/run_cc.sh"
 . "$source/tests/tap.sh"
 runtime_archive "$source/runtime"
@@ -34,7 +34,7 @@ made() {
 		order=$(./compare order)
 }
 
-while [ "$seed" -lt "$end" ]; do
+for seed in $(seeds "$first" "$many"); do
 	words=
 	if made "$seed" >log 2>&1; then
 		"$drawn_series" truth "$seed" "$order" >truth && ./compare <truth >log 2>&1
@@ -44,6 +44,5 @@ while [ "$seed" -lt "$end" ]; do
 		good=1
 	fi
 	result $good "seed $seed: $words"
-	seed=$((seed + 1))
 done
 tap_end

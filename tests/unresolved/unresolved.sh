@@ -46,8 +46,7 @@ rows() {
 }
 
 told=0
-seed=$first
-while [ "$seed" -lt $((first + models)) ]; do
+for seed in $(seeds "$first" "$models"); do
 	: >log
 	rows "$seed" >lines
 	"$unresolved" judge "$seed" <lines >verdicts
@@ -57,7 +56,6 @@ while [ "$seed" -lt $((first + models)) ]; do
 		result $? "model $seed by $scheme"
 	done
 	told=$((told + $(grep -c 'told [1-9]' verdicts)))
-	seed=$((seed + 1))
 done
 echo "$told of $((3 * models)) have told" >log
 [ $((20 * told)) -le $((3 * models)) ]
