@@ -6,13 +6,13 @@
 
 #include <string.h>
 
-/* Behind a typedef, or the tag and the members of a struct: `text` is at the word, of that length. NULL: it is
+/* Behind a typedef, or the tag and the members of a struct or union: `text` is at the word, of that length. NULL: it is
  * neither. */
 static const char *behind_type(const char *text, size_t length)
 {
 	if (is_named(text, length, "typedef"))
 		return behind(text, ';');
-	if (!is_named(text, length, "struct"))
+	if (!is_named(text, length, "struct") && !is_named(text, length, "union"))
 		return NULL;
 	const char *tag = text + length + strspn(text + length, " "), *end = tag + name_length(tag);
 	return end[strspn(end, " ")] == '{' ? behind(end, '}') : end;

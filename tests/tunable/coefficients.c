@@ -272,23 +272,24 @@ static int integers_of(const char *text, uint64_t *word)
     return count;
 }
 
-/* w h / (2 pi), of a turn, in units of a phase's last word */
-static void exact_phase(mpfr_t phase, mpq_srcptr w, mpq_srcptr h, int words)
+/* w h / (2 pi) in units of a phase's last word: turns, and what is beyond whole ones */
+static void exact_phase(mpfr_t turns, mpfr_t phase, mpq_srcptr w, mpq_srcptr h, int words)
 {
     mpfr_t pi;
     mpfr_init2(pi, mpfr_get_prec(phase));
     mpfr_const_pi(pi, MPFR_RNDN);
-    mpfr_set_q(phase, w, MPFR_RNDN);
-    mpfr_mul_q(phase, phase, h, MPFR_RNDN);
-    mpfr_div(phase, phase, pi, MPFR_RNDN);
-    mpfr_div_2ui(phase, phase, 1, MPFR_RNDN);
-    mpfr_frac(phase, phase, MPFR_RNDN);
+    mpfr_set_q(turns, w, MPFR_RNDN);
+    mpfr_mul_q(turns, turns, h, MPFR_RNDN);
+    mpfr_div(turns, turns, pi, MPFR_RNDN);
+    mpfr_div_2ui(turns, turns, 1, MPFR_RNDN);
+    mpfr_frac(phase, turns, MPFR_RNDN);
+    mpfr_mul_2ui(turns, turns, (unsigned long)(64 * words), MPFR_RNDN);
     mpfr_mul_2ui(phase, phase, (unsigned long)(64 * words), MPFR_RNDN);
     mpfr_clear(pi);
 }
 
 /* A frequency 2 pi f is known in two words on the target: a phase of sweep is the nearest number of units to one that
- * is off by 2^-104 of itself, in floats 2^-45. */
+ * is off by 2^-104 of the turns of a step, in floats 2^-45. */
 static bool nearly(const uint64_t *found, int words, mpq_srcptr w, mpq_srcptr h)
 {
     mpz_t units;
@@ -298,8 +299,8 @@ static bool nearly(const uint64_t *found, int words, mpq_srcptr w, mpq_srcptr h)
     mpz_init(units);
     mpfr_inits2(400, phase, most, NULL);
     mpz_import(units, (size_t)words, 1, sizeof *found, 0, 0, found);
-    exact_phase(phase, w, h, words);
-    mpfr_div_2ui(most, phase, BITS == 53 ? 104 : 45, MPFR_RNDN);
+    exact_phase(most, phase, w, h, words);
+    mpfr_div_2ui(most, most, BITS == 53 ? 104 : 45, MPFR_RNDN);
     mpfr_add_d(most, most, 0.5, MPFR_RNDN);
     mpfr_sub_z(phase, phase, units, MPFR_RNDN);
     const bool near = mpfr_cmpabs(phase, most) <= 0;
