@@ -240,9 +240,8 @@ static struct node *slope_of_power(struct node *node, const struct slope *by)
 {
 	struct node *base = derivative(node->child[0], by), *exponent = node->child[1];
 	struct node *moves = derivative(exponent, by), *sum = like(node, NODE_SUM);
-	if (!is_zero_node(moves) && (by->kind != SLOPE_PARAM || !(is_constant_node(node) || reads_states(node))))
-		error(by->at, NULL, "this derivative is not found: an exponent depends on %s",
-		      by->kind == SLOPE_PARAM ? by->name : "time");
+	if (!is_zero_node(moves) && by->kind == SLOPE_PARAM && !is_constant_node(node) && !reads_states(node))
+		error(by->at, NULL, "this derivative is not found: an exponent depends on %s", by->name);
 	if (!is_zero_node(moves))
 		append(sum, times(node, times(call(node, FN_LOG, node->child[0]), moves)), false);
 	if (!is_zero_node(base)) {
@@ -403,9 +402,8 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_MAX:  return slope_of_extreme(node, by);
 	case FN_DEADZONE:
 	case FN_CLIP: return slope_of_clipped(node, by);
+	case FN_TABLE: return slope_of_table(node, by);
 	default:
-		if (node->function == FN_TABLE && by->kind == SLOPE_PARAM)
-			return slope_of_table(node, by);
 		error(by->kind == SLOPE_PARAM ? node->at : by->at, NULL,
 		      "this derivative would hold that of %s, which is not found", function_name(node->function));
 	}

@@ -322,12 +322,13 @@ static void read_plain_output(struct parser *p, struct token name)
 			     : peak                      ? inlined(known->value, name.at, p->end)
 							 : resolve_name(p, name);
 	const bool total = !known && value->symbol && value->symbol->kind == SYMBOL_LET;
+	const int primes = value->symbol && value->symbol == known ? value->primes : name.primes;
 	const char *shown = total ? value->symbol->name
-			    : value->component ? format("%s[%d]%.*s", name.name, value->component, value->primes, "''")
-					     : format("%s%.*s", name.name, value->primes, "''");
+			    : value->component ? format("%s[%d]%.*s", name.name, value->component, primes, "''")
+					     : format("%s%.*s", name.name, primes, "''");
 	value->end = p->end;
 	const struct unit *written = take_unit(p, NULL),
-			  *unit = written ? written : unit_of_named(known, value->symbol ? value->primes : name.primes);
+			  *unit = written ? written : unit_of_named(known, primes);
 	if (known && known->kind == SYMBOL_INPUT)       /* it is in its own unit already */
 		value = written ? convert_unit(value, known->unit, false) : value;
 	if (written || (known && known->kind != SYMBOL_INPUT))
