@@ -155,6 +155,7 @@ static void evaluate_step(void *context)
 struct initial_work {
 	struct building *b;
 	int index;
+	bool known;                             /* each equation was read, and with it the order of its coordinates */
 };
 
 static void evaluate_initial(void *context)
@@ -167,6 +168,8 @@ static void evaluate_initial(void *context)
 	    count = initial->component || !coord->length ? 1 : coord->length;
 	struct value *value = collect_constants(&work->b->collector, initial->value);
 	bool single = value->rows == 1 && value->columns == 1;
+	if (initial->primes == 1 && coord->highest == 1 && !work->known)
+		return;
 	if (initial->primes == 1 && coord->highest == 1)
 		error(initial->at, "it appears only as a first derivative, so its start fixes all",
 		      "%s is of first order: its derivative has no initial value", coord->name);
@@ -185,9 +188,10 @@ static void evaluate_initial(void *context)
 static void evaluate_initials(struct building *b)
 {
 	size_t failed = SIZE_MAX;
+	const bool known = !diagnostics_errors();
 	for (int i = 0; i < b->spec->states.initials; i++) {
 		size_t statement = b->spec->states.initial[i].statement;
-		if (statement != failed && !statement_guard(evaluate_initial, &(struct initial_work){ b, i }))
+		if (statement != failed && !statement_guard(evaluate_initial, &(struct initial_work){ b, i, known }))
 			failed = statement;
 	}
 }
