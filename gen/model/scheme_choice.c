@@ -41,6 +41,18 @@ static const struct node *changing_term(struct building *b, struct node *node, i
 	return found;
 }
 
+/* Of network elements and energies: the equations have their derivatives. NULL: it stays what it is */
+static const struct node *changing_element(struct building *b, int i, int segment)
+{
+	struct node *value = b->spec->element[i].value;
+	const struct node *term = NULL;
+	if (same_in_states(b->segment_equations[0].element[i], b->segment_equations[segment].element[i]))
+		return NULL;
+	if (b->spec->element[i].kind != ELEMENT_ENERGY)
+		term = changing_term(b, value, segment);
+	return term ? term : value;
+}
+
 static const struct node *first_changing_term(struct building *b, int segment)
 {
 	const struct spec *spec = b->spec;
@@ -50,7 +62,7 @@ static const struct node *first_changing_term(struct building *b, int segment)
 		term = term ? term : changing_term(b, spec->equation[i].right, segment);
 	}
 	for (int i = 0; i < spec->elements && !term; i++)
-		term = changing_term(b, spec->element[i].value, segment);
+		term = changing_element(b, i, segment);
 	return term;
 }
 
