@@ -14,7 +14,7 @@
 #include <string.h>
 
 /* No step is tried that is likely to cost so many times what the cheapest costs that met all needs. */
-static const double dear = 2;
+static const double expensive = 2;
 
 /* ---- steps and tolerances of a scheme ---- */
 
@@ -51,7 +51,7 @@ static void try_steps(struct measuring *m, struct alternative a)
 		else
 			h = meeting * 2.6;
 		const double next = strtod(round_step(h), NULL);
-		if (one.cost * now / next > dear * m->cheapest)
+		if (one.cost * now / next > expensive * m->cheapest)
 			return;
 		if (next >= missing || next == meeting || m->until / next > MOST_SAMPLES)
 			return;
@@ -82,7 +82,7 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 			one = tried_step(m, one, m->longest);
 		else
 			try_alternative(m, &one);
-		if (one.refused || is_enough(m, &one) || one.cost > dear * m->cheapest)
+		if (one.refused || is_enough(m, &one) || one.cost > expensive * m->cheapest)
 			return;
 	}
 }

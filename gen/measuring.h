@@ -25,7 +25,7 @@ struct measuring {
 	bool stepped;               /* a reference goes from event to event: it is a scheme's, by its tolerance */
 	int drives;                 /* courses of the inputs that are tried; one where there are none */
 	struct sampled *drive;        /* NULL: there are none */
-	struct roads roads;
+	struct solvers solvers;
 	double longest;             /* [s] a step is not above this where it is open */
 	struct choice *choice;
 	double within;              /* up to this excess from the spec's start nothing finer is tried */
@@ -42,7 +42,7 @@ struct ready {                      /* a step as asked for, and its C */
 	struct step *step;          /* NULL: there is none */
 	struct running *r;          /* likewise */
 	struct request as;
-	struct roads roads;         /* the reference for its samples */
+	struct solvers solvers;     /* the reference for its samples */
 };
 
 /* ---- trial.c ---- */

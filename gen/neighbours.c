@@ -68,8 +68,8 @@ static void try_starts(struct measuring *m, struct alternative *a, struct ready 
 	const struct model *written = m->model->written;
 	const int states = written->system.states;
 	double *start = ARRAY(double, states);
-	running_start(m->roads.r, 0, NULL);
-	running_state(m->roads.r, start);
+	running_start(m->solvers.r, 0, NULL);
+	running_state(m->solvers.r, start);
 	for (int i = 0; i < states; i++) {
 		const double as_written = start[i];
 		if (as_written == 0)
@@ -94,8 +94,8 @@ static void try_amplitudes(struct measuring *m, struct alternative *a)
 		struct request as = with_param(request_of(m, a), s, by), wide = as;
 		wide.single = false;
 		struct ready ready = ready_of(m, &as, &why);
-		ready.roads.r = ready_of(m, &wide, &why).r;
-		if (ready.r && ready.roads.r)
+		ready.solvers.r = ready_of(m, &wide, &why).r;
+		if (ready.r && ready.solvers.r)
 			try_near(m, a, &ready, NULL, format("%s times %s", s->name, by));
 	}
 }

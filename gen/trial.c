@@ -45,14 +45,14 @@ struct step *built(struct measuring *m, const struct request *as, const char **w
 
 struct ready ready_of(struct measuring *m, const struct request *as, const char **why)
 {
-	struct ready found = { .step = built(m, as, why), .as = *as, .roads = m->roads };
+	struct ready found = { .step = built(m, as, why), .as = *as, .solvers = m->solvers };
 	const enum running_with with = m->stepped ? WITH_COUNTS : WITH_RHS | WITH_COUNTS;
-	found.roads.most = LIMIT_MEASURED;
+	found.solvers.most = LIMIT_MEASURED;
 	if (!found.step)
 		return found;
 	const char *refused;
 	found.r = running_new(m->model->needs.requirement[0].need->at, found.step, with, &refused);
-	found.roads.h = mpq_get_d(found.step->model->h);
+	found.solvers.h = mpq_get_d(found.step->model->h);
 	(m->single ? target_float : target_double)();
 	*why = refused ? refused : *why;
 	return found;
@@ -61,26 +61,27 @@ struct ready ready_of(struct measuring *m, const struct request *as, const char 
 /* ---- the reference ---- */
 
 /* What has events, or constraints, is stepped from one to the next by a series, or by collocation. */
-static struct course *stepped_road(struct measuring *m, const struct ready *ready, int which, const double *start,
+static struct course *stepped_reference(struct measuring *m, const struct ready *ready, int which, const double *start,
 				   const char **why)
 {
 	struct request as = ready->as;
 	as.single = false;
 	as.form = FORM_AUTO;
 	as.scheme = which ? "radau" : "taylor";
-	as.tolerance = format("%.0e", ready->roads.tolerance);
-	as.step = shortest(ready->roads.h);
+	as.tolerance = format("%.0e", ready->solvers.tolerance);
+	as.step = shortest(ready->solvers.h);
 	struct ready own = ready_of(m, &as, why);
-	own.roads = ready->roads;
-	own.roads.r = own.r;
-	return own.r ? stepped_course(&own.roads, start, why) : NULL;
+	own.solvers = ready->solvers;
+	own.solvers.r = own.r;
+	return own.r ? stepped_course(&own.solvers, start, why) : NULL;
 }
 
-/* By the first road or the second; NULL: *why */
-static struct course *road_from(struct measuring *m, struct ready *ready, int which, const double *start,
+/* By the first solver or the second; NULL: *why */
+static struct course *reference_course(struct measuring *m, struct ready *ready, int which, const double *start,
 				const char **why)
 {
-	return m->stepped ? stepped_road(m, ready, which, start, why) : road_of(&ready->roads, which, start, why);
+	return m->stepped ? stepped_reference(m, ready, which, start, why)
+			  : solved_course(&ready->solvers, which, start, why);
 }
 
 /* [rad/s] the fastest that a coordinate moves: its velocity's largest size over its own */
@@ -90,19 +91,19 @@ static double fastest_motion(const struct measuring *m)
 	double most = 0;
 	for (int i = 0; i < system->n; i++) {
 		const int v = system->velocity[i];
-		if (v >= 0 && m->roads.size[i] > 0)
-			most = fmax(most, m->roads.size[v] / m->roads.size[i]);
+		if (v >= 0 && m->solvers.size[i] > 0)
+			most = fmax(most, m->solvers.size[v] / m->solvers.size[i]);
 	}
 	return most;
 }
 
-/* A pair of roads, and how far they are apart over what is needed; infinite: one comes to no end */
+/* A pair of solvers, and how far they are apart over what is needed; infinite: one comes to no end */
 static double disagreement(struct measuring *m, struct ready *ready)
 {
-	struct course *course[ROADS] = { NULL };
+	struct course *course[SOLVERS] = { NULL };
 	double worst = 0;
-	for (int which = 0; which < ROADS; which++)
-		course[which] = which && !course[0] ? NULL : road_from(m, ready, which, NULL, &m->why);
+	for (int which = 0; which < SOLVERS; which++)
+		course[which] = which && !course[0] ? NULL : reference_course(m, ready, which, NULL, &m->why);
 	for (int i = 0; i < m->model->needs.requirements && course[0] && course[1]; i++) {
 		const struct requirement *r = &m->model->needs.requirement[i];
 		m->largest[i] = fmax(m->drive ? m->largest[i] : 0, largest_of(course[0], i));
@@ -110,7 +111,7 @@ static double disagreement(struct measuring *m, struct ready *ready)
 		worst = over <= worst ? worst : over;
 	}
 	bool both = course[0] && course[1];
-	for (int which = 0; which < ROADS; which++)
+	for (int which = 0; which < SOLVERS; which++)
 		if (course[which])
 			course_free(course[which]);
 	return both ? worst : HUGE_VAL;
@@ -121,31 +122,31 @@ static double disagreements(struct measuring *m, struct ready *ready)
 {
 	double worst = 0;
 	for (int i = 0; i < m->drives && worst <= known; i++) {
-		ready->roads.drive = m->drive ? &m->drive[i] : NULL;
+		ready->solvers.drive = m->drive ? &m->drive[i] : NULL;
 		worst = fmax(worst, disagreement(m, ready));
 	}
 	return worst;
 }
 
-/* Sizes of the states first, roughly; then tolerances down to where the roads agree */
+/* Sizes of the states first, roughly; then tolerances down to where the solvers agree */
 static bool find_tolerance(struct measuring *m, struct ready *ready)
 {
 	const size_t states = (size_t)m->model->written->system.states;
-	struct roads *roads = &ready->roads;
+	struct solvers *solvers = &ready->solvers;
 	double apart_at_best = HUGE_VAL;
-	roads->h = m->drive ? m->drive->h : m->until / 64;
-	roads->drive = m->drive;
+	solvers->h = m->drive ? m->drive->h : m->until / 64;
+	solvers->drive = m->drive;
 	for (int pair = 0; pair < (m->stepped ? 1 : 2); pair++) {
-		roads->stiff = pair > 0;
-		roads->size = ARRAY(double, states);
-		roads->tolerance = 1e-5;
+		solvers->stiff = pair > 0;
+		solvers->size = ARRAY(double, states);
+		solvers->tolerance = 1e-5;
 		for (int again = 0; again < 2; again++) {
-			struct course *rough = road_from(m, ready, 0, NULL, &m->why);
+			struct course *rough = reference_course(m, ready, 0, NULL, &m->why);
 			if (rough)
 				course_free(rough);
 		}
 		for (double tolerance = 1e-8; tolerance > 1e-15; tolerance *= 0.01) {
-			roads->tolerance = tolerance;
+			solvers->tolerance = tolerance;
 			const double found = disagreements(m, ready);
 			if (found <= known)
 				return true;
@@ -165,10 +166,10 @@ static void find_changes(struct measuring *m)
 {
 	const struct linear *system = &m->model->written->system;
 	double *change = ARRAY(double, system->segments);
-	m->roads.changes = system->segments - 1;
-	for (int k = 0; k < m->roads.changes; k++)
+	m->solvers.changes = system->segments - 1;
+	for (int k = 0; k < m->solvers.changes; k++)
 		change[k] = mpq_get_d(system->change[k]);
-	m->roads.change = change;
+	m->solvers.change = change;
 }
 
 /* [rad/s] of the linear operator, in rising order, as many as tell apart; else by length of time and of a step */
@@ -212,14 +213,14 @@ bool open_reference(struct measuring *m)
 	as.form = FORM_AUTO;
 	m->stepped = goes_by_events(m->model) || m->model->spec->count.multipliers > 0;
 	struct ready ready = ready_of(m, &as, &m->why);
-	m->roads = (struct roads){ .r = ready.r, .until = m->until, .most = LIMIT_MEASURED / 4 };
+	m->solvers = (struct solvers){ .r = ready.r, .until = m->until, .most = LIMIT_MEASURED / 4 };
 	if (!ready.r)
 		return false;
 	find_drives(m, ready.step);
 	find_changes(m);
-	ready.roads = m->roads;
+	ready.solvers = m->solvers;
 	const bool found = find_tolerance(m, &ready);
-	m->roads = ready.roads;
+	m->solvers = ready.solvers;
 	if (!found)
 		return false;
 	const double fastest = fastest_motion(m);
@@ -243,28 +244,28 @@ static double cost_of_trial(const struct trial *t, const struct target *target, 
 /* From the spec's start; it is kept where it is not too long */
 static struct course *kept_reference(struct measuring *m, struct ready *ready, int drive, const char **why)
 {
-	const struct roads *roads = &ready->roads;
+	const struct solvers *solvers = &ready->solvers;
 	for (int i = 0; i < m->kept; i++)
-		if (m->keeps[i].h == roads->h && m->keeps[i].drive == drive)
+		if (m->keeps[i].h == solvers->h && m->keeps[i].drive == drive)
 			return m->keeps[i].course;
-	struct course *course = road_from(m, ready, 0, NULL, why);
+	struct course *course = reference_course(m, ready, 0, NULL, why);
 	if (!course || course->samples * course->needs > MOST_KEPT)
 		return course;
 	course->kept = true;
-	*MORE(m->keeps, m->kept) = (struct kept_course){ roads->h, drive, course };
+	*MORE(m->keeps, m->kept) = (struct kept_course){ solvers->h, drive, course };
 	return course;
 }
 
 double tried_from(struct measuring *m, struct alternative *a, struct ready *ready, const double *start, int drive,
 		  bool spec)
 {
-	struct roads *roads = &ready->roads;
-	roads->drive = m->drive ? &m->drive[drive] : NULL;
+	struct solvers *solvers = &ready->solvers;
+	solvers->drive = m->drive ? &m->drive[drive] : NULL;
 	struct course *reference = spec ? kept_reference(m, ready, drive, &a->why)
-					: road_from(m, ready, 0, start, &a->why);
+					: reference_course(m, ready, 0, start, &a->why);
 	if (!reference)
 		return m->stepped && !spec ? -1 : HUGE_VAL;
-	struct trial trial = trial_of(ready->r, reference, start, roads->drive);
+	struct trial trial = trial_of(ready->r, reference, start, solvers->drive);
 	const struct model *model = ready->step->model;
 	double worst = 0;
 	for (int i = 0; i < model->needs.requirements; i++) {
@@ -278,7 +279,7 @@ double tried_from(struct measuring *m, struct alternative *a, struct ready *read
 	}
 	if (spec) {
 		a->step_cost = cost_of_trial(&trial, model->needs.target, model->request.single);
-		a->cost = a->step_cost / roads->h;
+		a->cost = a->step_cost / solvers->h;
 	}
 	a->why = trial.why ? trial.why : a->why;
 	if (!reference->kept)
@@ -310,8 +311,8 @@ bool is_enough(const struct measuring *m, const struct alternative *a)
 /* From the spec's start, with all inputs that are tried */
 static void try_inputs(struct measuring *m, struct alternative *a, struct ready *ready)
 {
-	if (m->until / ready->roads.h > MOST_SAMPLES) {
-		a->why = format("%.0f steps are more than the %d that are measured", m->until / ready->roads.h,
+	if (m->until / ready->solvers.h > MOST_SAMPLES) {
+		a->why = format("%.0f steps are more than the %d that are measured", m->until / ready->solvers.h,
 				MOST_SAMPLES);
 		return;
 	}

@@ -428,7 +428,7 @@ static int combine(const resting *r, int count, int number, const int *before, i
 
 #ifdef RESTING
 /* More than MOST of them, in `interval`, by block pivoting: all that do not agree change over together while that
- * leaves fewer of them, else the first of them alone, which ends where velocities answer to forces by a P-matrix.  0:
+ * leaves fewer of them, else the first of them alone, which ends where the Delassus matrix is a P-matrix.  0:
  * they do not come to agree. */
 static int pivot(const contacts *m, instant *at, const resting *r, int count, int *interval)
 {
@@ -558,7 +558,7 @@ static uint32_t near_rest(const contacts *m, const instant *at)
     return together > 1 ? set : 0;
 }
 
-/* Several that strike each other come to rest together if all of them are pressed then. */
+/* Several that pass impacts to each other come to rest together if all of them are pressed then. */
 static void rest_together(const contacts *m, instant *at, uint32_t set)
 {
     const uint32_t laid = seat(m, at, set);

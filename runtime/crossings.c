@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Steps of piecewise-linear models, in pieces of which most stay clear of every breakpoint, and a bound shows it; the
+/* Steps of piecewise-linear models, in pieces, most of which a bound shows to be event-free; the
  * others are so short that the fastest pole does not turn far, and go by Taylor polynomials, on which the first
  * crossing is isolated before it is computed, so none is stepped over. */
 #ifndef STATE_IS_COMPENSATED
@@ -63,7 +63,7 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
     decide(m, x, c, below, 1, work);
 }
 
-/* ---- a piece that stays clear ---- */
+/* ---- an event-free piece ---- */
 
 /* Whether every switching function, known to be within low .. high, is clear of the breakpoints beside it */
 static int clear(const pl_switching *m, int region, const real *low, const real *high)

@@ -126,15 +126,15 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
     real acting[PL_ROOM(PL_ACTING)], x[PL_SIZE], a[PL_SIZE], b[PL_SIZE];
     real r[PL_FORCES], ra[PL_FORCES], rb[PL_FORCES], rc[PL_FORCES], work[PL_EVENT_SPLIT_WORK(PL_SIZE)];
     pl_two room[PL_EVENT_SPLIT_ROOM(PL_SIZE)];
-    pl_event_split cut;
-    int i, status = pl_event_split_begin(&cut, PL_SIZE, PL(slope_matrix)[p->segment][0], PL_FASTEST, tau, work, room);
+    pl_event_split split;
+    int i, status = pl_event_split_begin(&split, PL_SIZE, PL(slope_matrix)[p->segment][0], PL_FASTEST, tau, work, room);
     if (status != 0) {
         return status;
     }
     PL(acting)(p->s, p->start, p->slope, at, acting);
     PL(forces)(p, at, y, r);
     PL(gather)(y, acting, r, x);
-    pl_event_split_flow(&cut, 1, x, a); /* a = F y + q1 r */
+    pl_event_split_flow(&split, 1, x, a); /* a = F y + q1 r */
     PL(forces)(p, at + tau / 2, a, ra);
     for (i = 0; i < PL_FORCES; i++) {
         rc[i] = ra[i] - r[i];
@@ -143,7 +143,7 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
     for (i = 0; i < PL_STATES + PL_ACTING; i++) {
         x[i] = 0;
     }
-    pl_event_split_flow(&cut, 1, x, b); /* b = F y + q1 r(a) */
+    pl_event_split_flow(&split, 1, x, b); /* b = F y + q1 r(a) */
     for (i = 0; i < PL_STATES; i++) {
         b[i] += a[i];
     }
@@ -152,11 +152,11 @@ static PL_APART int PL(advance)(const PL(piece) *p, real size, const real y[PL_S
         rc[i] = 2 * rb[i] - r[i];
     }
     PL(gather)(a, a + PL_STATES, rc, x);
-    pl_event_split_flow(&cut, 1, x, b); /* c = F a + q1 (2 r(b) - r) */
+    pl_event_split_flow(&split, 1, x, b); /* c = F a + q1 (2 r(b) - r) */
     PL(forces)(p, at + tau, b, rc);
     PL(gather)(y, acting, r, x);
     PL(bend)(r, ra, rb, rc, tau, x);
-    pl_event_split_flow(&cut, 0, x, b);
+    pl_event_split_flow(&split, 0, x, b);
     for (i = 0; i < PL_STATES; i++) {
         next[i] = b[i];
     }

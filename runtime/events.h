@@ -208,9 +208,9 @@ void pl_guards_start(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REA
  *
  * After a bounce with departure speed v, pressed back by the acceleration a, all further bounces take T = 2 v/(a (1 -
  * e)).  With e < 1 the contact rests, listed T later, if T <= PL_BRIEF h, or, once the list of crossings is nearly
- * full, if T <= 2^-10 h (float: 2^-8).  Contacts that touch and strike each other rest together if that holds for each
- * with the largest a, or if their bounces are lower than rounding, and all are pressed then.  Their speeds follow from
- * impacts with e = 0, so momentum is conserved.  A contact rests until its force would become a pull.
+ * full, if T <= 2^-10 h (float: 2^-8).  Contacts that touch and pass impacts to each other rest together if that holds
+ * for each with the largest a, or if their bounces are lower than rounding, and all are pressed then.  Their speeds
+ * follow from impacts with e = 0, so momentum is conserved.  A contact rests until its force would become a pull.
  *
  * Impacts with e < 1 go on when the list is full, up to 65536 events in a step.  A penetration within rounding counts
  * as none; c->status receives PL_PENETRATED if there is more at the end of a step. */

@@ -30,13 +30,13 @@
  *     PL(size_of)(x)             the sum of |x| */
 
 /* Of a step, in one region */
-typedef struct PL(stretch) {
+typedef struct PL(subinterval) {
     double done, left, length; /* before it, to the end of the step; looked at */
     int region, which;
     int passed, behind;        /* switching function that comes from an end of its interval; which end */
-} PL(stretch);
+} PL(subinterval);
 
-static void PL(next_stretch)(PL(stretch) *p, double gone, int region, int which, int passed, int behind)
+static void PL(next_subinterval)(PL(subinterval) *p, double gone, int region, int which, int passed, int behind)
 {
     p->done += gone;
     p->length = 1.0 - p->done;
@@ -244,7 +244,7 @@ static void PL(go)(int which, double part, double x[PL_VECTOR], const double end
 
 /* The first crossing: 1, and moves on to it; 0: there is none in this length; -1: that is not certain, and may be so of
  * less; -2: nor of less */
-static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SIZE], pl_crossing *crossing)
+static int PL(first)(PL(subinterval) *p, double x[PL_VECTOR], const double end[PL_SIZE], pl_crossing *crossing)
 {
     double off[PL_SWITCHING_FUNCTIONS], y[PL_SIZE], z = 2.0;
 #if PL_SWITCHING_FUNCTIONS > 1
@@ -300,7 +300,7 @@ static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SI
     }
 #endif
     PL(go)(p->which, z, x, y);
-    PL(next_stretch)(p, z, next, PL(matrix)[next], first, !up);
+    PL(next_subinterval)(p, z, next, PL(matrix)[next], first, !up);
     crossing->time = p->done * PL_H;
     crossing->expression = first;
     crossing->breakpoint = PL(span)[next][first] - up;
@@ -312,7 +312,7 @@ static int PL(first)(PL(stretch) *p, double x[PL_VECTOR], const double end[PL_SI
 static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
 {
     pl_crossing crossing[PL_FEW];
-    PL(stretch) part = {0.0, 1.0, 1.0, 0, 0, -1, -1};
+    PL(subinterval) part = {0.0, 1.0, 1.0, 0, 0, -1, -1};
     double x[PL_VECTOR], end[PL_SIZE];
     int i, look, count = 0;
     for (i = 0; i < PL_VECTOR; i++) {
@@ -341,7 +341,7 @@ static PL_APART int PL(cross)(PL_TYPE *s, const double now[PL_VECTOR])
             count++;
         } else {
             PL(go)(part.which, part.length, x, end);
-            PL(next_stretch)(&part, part.length, part.region, part.which, -1, -1);
+            PL(next_subinterval)(&part, part.length, part.region, part.which, -1, -1);
         }
         PL(move)(part.which, x, part.length, end);
         for (i = 0; i < PL_SIZE; i++) {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Pieces that stay clear of every
- * guard of their region go by e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated.
- * What is to stick and what is to slip after an event is found by looking at all combinations of those that are at
- * rest. */
+/* Steps of piecewise-linear models with dry friction and jumps, from event to event.  Event-free pieces go by
+ * e^{A d}; others, short ones, by Taylor polynomials, on which the first event is isolated.  What sticks and what slips
+ * after an event is found among all combinations of those that are at rest. */
 #include "ladder.h"
 #include "impacts.h"
 

@@ -24,7 +24,7 @@
  *                                        impacts in all segments of time, what friction carries; else 0
  *     PL(guard_branch)[], PL(guard_rung)[] of rows of guards
  *     PL_BOUNDED, PL(bounded)[]          columns of x that are never above 1
- *     PL_EVENT_FREE                          1: steps that stay clear need no search, for which
+ *     PL_EVENT_FREE                          1: event-free steps need no search, for which
  *     PL_STAYS, PL(stays)[], PL(stay_param)[]    columns of x stay; which param each is, -1: 1
  *     PL_PAIRS, PL(pair)[]               loads oscillate, the first column of each; the next is its other one
  *     PL_STILL                           1: steps are looked at that stay still
@@ -209,7 +209,7 @@ static void PL(bound)(PL(coeffs) *c, int k, real h)
 #endif
 }
 
-/* ---- steps that stay clear: what stays of x from step to step summed, bounds over what is never above 1 ---- */
+/* ---- event-free steps: what stays of x from step to step summed, bounds over what is never above 1 ---- */
 
 #if PL_EVENT_FREE
 #if PL_STILL

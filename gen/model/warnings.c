@@ -16,9 +16,8 @@
 
 enum { SAMPLES = 32 };
 
-/* By which part of itself a squared frequency exceeds the operator's: as time goes by a little is told, of a motion
- * what is felt: twice the operator's where the phase that this costs in a thousand steps is more than DRIFT [rad], ten
- * times it anyhow. */
+/* The part of itself by which a squared frequency has to exceed the operator's for a warning: LITTLE at rest as time
+ * goes by; of a motion TWICE where a thousand steps lose more than DRIFT [rad] of phase, else TENFOLD. */
 static const double LITTLE = 1e-2, TWICE = 0.5, TENFOLD = 0.9, DRIFT = 1e-3;
 
 /* ---- explicit predictors ---- */
@@ -109,8 +108,8 @@ static const char *growth_text(const struct model *model, double difference)
 
 static bool is_reported(const struct model *model, bool moved, double here, double there)
 {
-	bool felt = !moved || drift_of_softness(model, here - there) > DRIFT;
-	return here - there > (moved ? felt ? TWICE : TENFOLD : LITTLE) * fabs(here) && (felt || there > 0);
+	bool matters = !moved || drift_of_softness(model, here - there) > DRIFT;
+	return here - there > (moved ? matters ? TWICE : TENFOLD : LITTLE) * fabs(here) && (matters || there > 0);
 }
 
 /* `moved`: the states are those of a motion, not at rest */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What is held beside a series, and what strikes: in words and as JSON. */
+/* Contacts, friction and impacts beside a series: in words and as JSON. */
 #include "model/contacts/contacts.h"
 #include "report/report.h"
 #include "step/series/switching.h"

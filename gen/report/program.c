@@ -301,7 +301,7 @@ static void print_regions(FILE *to, const struct step *step)
 {
 	const struct switching *s = step->model->switching;
 	fprintf(to,
-		"Actions, from piece to piece d of the step, the longest that is seen to stay clear:\n"
+		"Actions, from piece to piece d of the step, the longest that is seen to be event-free:\n"
 		"    y %s y + loads + piece.held u + piece.ramp u'\n"
 		"    where %s passes a breakpoint: the Taylor series of y, of degree %d, to there; then the next "
 		"region\n",

@@ -167,7 +167,7 @@ void text_series_switching(FILE *to, const struct step *step)
 		text_region_number(to, x->functions);
 }
 
-/* What rubs, a line each, and where it sticks: its expression, and the interval of that */
+/* Each friction on a line: its expression, and the interval in which it sticks */
 static void text_frictions(FILE *to, const struct switching *s)
 {
 	for (int i = 0, shown = 0; i < s->frictions; i++) {

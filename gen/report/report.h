@@ -86,7 +86,7 @@ void json_regions(FILE *to, const struct step *step);        /* members of an ob
 void text_series_switching(FILE *to, const struct step *step); /* of a series */
 void json_series_switching(FILE *to, const struct step *step); /* members of an object */
 
-/* ---- contacts.c: what is held beside a series, and what strikes ---- */
+/* ---- contacts.c: contacts, friction and impacts beside a series ---- */
 
 void text_contacts(FILE *to, const struct step *step);
 void text_impact_rules(FILE *to, const struct model *model); /* of several at one instant, of bounces that end */

@@ -38,33 +38,33 @@ static void begin(struct running *r, const struct sampled *drive, const double *
 }
 
 /* What is needed at sample k; sizes of the states are kept. */
-static void take_sample(const struct roads *roads, struct course *course, long k, double *y)
+static void take_sample(const struct solvers *solvers, struct course *course, long k, double *y)
 {
-	running_needed(roads->r, course->value + k * course->needs);
-	running_state(roads->r, y);
-	for (int i = 0; i < running_step_of(roads->r)->model->written->system.states && roads->size; i++)
-		roads->size[i] = fmax(roads->size[i], fabs(y[i]));
+	running_needed(solvers->r, course->value + k * course->needs);
+	running_state(solvers->r, y);
+	for (int i = 0; i < running_step_of(solvers->r)->model->written->system.states && solvers->size; i++)
+		solvers->size[i] = fmax(solvers->size[i], fabs(y[i]));
 }
 
-struct course *stepped_course(const struct roads *roads, const double *start, const char **why)
+struct course *stepped_course(const struct solvers *solvers, const double *start, const char **why)
 {
-	const struct model *model = running_step_of(roads->r)->model;
-	struct course *course = course_of(model, roads->h);
+	const struct model *model = running_step_of(solvers->r)->model;
+	struct course *course = course_of(model, solvers->h);
 	SCRATCH double *u = ARRAY(double, 2 * (size_t)model->system.inputs + 1);
 	SCRATCH double *y = ARRAY(double, (size_t)model->written->system.states + 1);
-	const uint64_t before = running_counted(roads->r).multiplications;
+	const uint64_t before = running_counted(solvers->r).multiplications;
 	const char *ended = NULL;
-	begin(roads->r, roads->drive, start);
-	take_sample(roads, course, 0, y);
+	begin(solvers->r, solvers->drive, start);
+	take_sample(solvers, course, 0, y);
 	for (long k = 0; k < course->samples && !ended; k++) {
-		if (roads->drive)
-			drive_step(roads->drive, k, u);
-		running_step(roads->r, u);
-		take_sample(roads, course, k + 1, y);
-		if (running_status(roads->r) != 0)
-			ended = format("a reference ends with status %d at t = %.3g s", running_status(roads->r),
-				       running_time(roads->r));
-		else if (running_counted(roads->r).multiplications - before > roads->most)
+		if (solvers->drive)
+			drive_step(solvers->drive, k, u);
+		running_step(solvers->r, u);
+		take_sample(solvers, course, k + 1, y);
+		if (running_status(solvers->r) != 0)
+			ended = format("a reference ends with status %d at t = %.3g s", running_status(solvers->r),
+				       running_time(solvers->r));
+		else if (running_counted(solvers->r).multiplications - before > solvers->most)
 			ended = "a reference would take too long";
 	}
 	if (!ended)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Solutions of the equations as written, for comparison. Two roads: Prince and Dormand's Runge-Kutta pair of order 8
+/* Solutions of the equations as written, for comparison. Two solvers: Prince and Dormand's Runge-Kutta pair of order 8
  * (GSL), and Gragg's modified midpoint rule extrapolated by Bulirsch and Stoer (Hairer, Norsett, Wanner I, II.9);
  * where stiffness makes them slow, Gear's backward differentiation formulas and Bader and Deuflhard's implicit midpoint
  * rule (both GSL). What they have in common is NAME_rhs, and that they start anew where a formula in time changes. */
@@ -12,8 +12,8 @@
 
 enum { COLUMNS = 8 };               /* of the extrapolation: order 16 */
 
-struct journey {                    /* one road from start to end */
-	struct roads *roads;
+struct journey {                    /* one solution from start to end */
+	struct solvers *solvers;
 	int states;
 	double *y;
 	double t, step;             /* [s]; the step that the method would take */
@@ -26,15 +26,15 @@ struct journey {                    /* one road from start to end */
 	gsl_odeiv2_driver *driver;
 };
 
-static uint64_t operations_so_far(const struct roads *roads)
+static uint64_t operations_so_far(const struct solvers *solvers)
 {
-	const struct counted counted = running_counted(roads->r);
+	const struct counted counted = running_counted(solvers->r);
 	return counted.multiplications + counted.additions + 20 * counted.calls;
 }
 
 static bool is_spent(const struct journey *j)
 {
-	return operations_so_far(j->roads) - j->before > j->roads->most;
+	return operations_so_far(j->solvers) - j->before > j->solvers->most;
 }
 
 /* At the ends of an interval its own formula counts, not that of the next. */
@@ -42,9 +42,9 @@ static int slopes(double t, const double *y, double *slope, void *context)
 {
 	const struct journey *j = context;
 	double inside = t >= j->last ? nextafter(j->last, -HUGE_VAL) : t <= j->first ? j->first : t;
-	if (j->roads->drive)
-		drive_at(j->roads->drive, j->sample, t, j->u);
-	running_rhs(j->roads->r, inside, y, j->u, slope);
+	if (j->solvers->drive)
+		drive_at(j->solvers->drive, j->sample, t, j->u);
+	running_rhs(j->solvers->r, inside, y, j->u, slope);
 	for (int i = 0; i < j->states; i++)
 		if (!isfinite(slope[i]))
 			return GSL_FAILURE;             /* a shorter step may do */
@@ -61,7 +61,7 @@ static int jacobian(double t, const double *y, double *dfdy, double *dfdt, void 
 	memcpy(at, y, (size_t)n * sizeof *at);
 	int status = slopes(t, at, here, context);
 	for (int k = 0; k < n && status == GSL_SUCCESS; k++) {
-		double size = j->roads->size ? j->roads->size[k] : 0, by = 1e-8 * (size + fabs(y[k]) + 1e-12);
+		double size = j->solvers->size ? j->solvers->size[k] : 0, by = 1e-8 * (size + fabs(y[k]) + 1e-12);
 		at[k] = y[k] + by;
 		by = at[k] - y[k];
 		status = slopes(t, at, there, context);
@@ -69,7 +69,7 @@ static int jacobian(double t, const double *y, double *dfdy, double *dfdt, void 
 			dfdy[i * n + k] = (there[i] - here[i]) / by;
 		at[k] = y[k];
 	}
-	double dt = 1e-7 * (j->roads->h + fabs(t) * 1e-6);
+	double dt = 1e-7 * (j->solvers->h + fabs(t) * 1e-6);
 	if (status == GSL_SUCCESS)
 		status = slopes(t + dt, at, there, context);
 	for (int i = 0; i < n; i++)
@@ -104,7 +104,7 @@ static int midpoint(struct journey *j, const double *slope, double step, int sub
 
 static double scale_of(const struct journey *j, int i)
 {
-	const double size = j->roads->size ? j->roads->size[i] : fabs(j->y[i]);
+	const double size = j->solvers->size ? j->solvers->size[i] : fabs(j->y[i]);
 	return size > 0 ? size : 1;
 }
 
@@ -120,7 +120,7 @@ static double extrapolate(const struct journey *j, double (*row)[COLUMNS], int c
 				before = p[k];
 				p[k] += (p[k] - p[k - 1]) / (ratio * ratio - 1);
 			}
-		error = fmax(error, fabs(p[columns - 1] - before) / (scale_of(j, i) * j->roads->tolerance));
+		error = fmax(error, fabs(p[columns - 1] - before) / (scale_of(j, i) * j->solvers->tolerance));
 	}
 	return error;
 }
@@ -143,7 +143,7 @@ static int extrapolated_step(struct journey *j, double most)
 			return status;
 		const double error = status == GSL_SUCCESS ? extrapolate(j, row, COLUMNS) : 1e30;
 		const double factor = 0.9 * pow(fmax(error, 1e-30), -1.0 / (2 * COLUMNS - 1));
-		if (!(step > 1e-15 * j->roads->until))
+		if (!(step > 1e-15 * j->solvers->until))
 			return GSL_FAILURE;
 		status = GSL_SUCCESS;
 		if (error <= 1) {
@@ -175,21 +175,21 @@ static int extrapolate_to(struct journey *j, double end)
 
 static void open_driver(struct journey *j, int which)
 {
-	const gsl_odeiv2_step_type *type = !j->roads->stiff ? gsl_odeiv2_step_rk8pd
+	const gsl_odeiv2_step_type *type = !j->solvers->stiff ? gsl_odeiv2_step_rk8pd
 					   : which == 0	    ? gsl_odeiv2_step_msbdf
 							    : gsl_odeiv2_step_bsimp;
 	double *scale = ARRAY(double, j->states);
 	for (int i = 0; i < j->states; i++)
 		scale[i] = scale_of(j, i);
 	j->system = (gsl_odeiv2_system){ slopes, jacobian, (size_t)j->states, j };
-	j->driver = need_memory(gsl_odeiv2_driver_alloc_scaled_new(&j->system, type, j->step, j->roads->tolerance, 0, 1,
-								   0, scale));
-	gsl_odeiv2_driver_set_hmin(j->driver, 1e-16 * j->roads->until);
+	j->driver = need_memory(gsl_odeiv2_driver_alloc_scaled_new(&j->system, type, j->step, j->solvers->tolerance, 0,
+								   1, 0, scale));
+	gsl_odeiv2_driver_set_hmin(j->driver, 1e-16 * j->solvers->until);
 }
 
-/* ---- a road ---- */
+/* ---- a solver ---- */
 
-static double next_change(const struct roads *r, double t)
+static double next_change(const struct solvers *r, double t)
 {
 	for (int k = 0; k < r->changes; k++)
 		if (r->change[k] > t)
@@ -200,15 +200,15 @@ static double next_change(const struct roads *r, double t)
 static int travel_to(struct journey *j, int which, double end)
 {
 	int status = GSL_SUCCESS;
-	bool own = which == 1 && !j->roads->stiff;
+	bool own = which == 1 && !j->solvers->stiff;
 	while (j->t < end && status == GSL_SUCCESS) {
 		const double stop = fmin(end, j->last);
 		status = own ? extrapolate_to(j, stop) : gsl_odeiv2_driver_apply(j->driver, &j->t, stop, j->y);
 		if (status != GSL_SUCCESS || j->t < j->last)
 			continue;
 		j->first = j->t;
-		j->last = next_change(j->roads, j->t);
-		j->step = 1e-3 * j->roads->h;
+		j->last = next_change(j->solvers, j->t);
+		j->step = 1e-3 * j->solvers->h;
 		if (!own)
 			gsl_odeiv2_driver_reset_hstart(j->driver, j->step);
 	}
@@ -218,17 +218,17 @@ static int travel_to(struct journey *j, int which, double end)
 /* With inputs the step after this sample begins. */
 static void keep_sample(struct journey *j, struct course *course, long k)
 {
-	if (j->roads->drive) {
-		running_start(j->roads->r, 0, NULL);
-		running_drive(j->roads->r, j->roads->drive, k);
+	if (j->solvers->drive) {
+		running_start(j->solvers->r, 0, NULL);
+		running_drive(j->solvers->r, j->solvers->drive, k);
 		j->sample = k;
 		if (j->driver)
 			gsl_odeiv2_driver_reset(j->driver);
 	}
-	running_start(j->roads->r, j->t, j->y);
-	running_needed(j->roads->r, course->value + k * course->needs);
-	for (int i = 0; i < j->states && j->roads->size; i++)
-		j->roads->size[i] = fmax(j->roads->size[i], fabs(j->y[i]));
+	running_start(j->solvers->r, j->t, j->y);
+	running_needed(j->solvers->r, course->value + k * course->needs);
+	for (int i = 0; i < j->states && j->solvers->size; i++)
+		j->solvers->size[i] = fmax(j->solvers->size[i], fabs(j->y[i]));
 }
 
 static const char *reason_of(int status)
@@ -237,25 +237,25 @@ static const char *reason_of(int status)
 				      : "a reference needs steps too short: the equations jump, or have no solution";
 }
 
-struct course *road_of(struct roads *roads, int which, const double *start, const char **why)
+struct course *solved_course(struct solvers *solvers, int which, const double *start, const char **why)
 {
-	const struct step *step = running_step_of(roads->r);
+	const struct step *step = running_step_of(solvers->r);
 	size_t n = (size_t)step->model->written->system.states;
-	struct journey j = { .roads = roads, .states = (int)n, .before = operations_so_far(roads),
-			     .step = 1e-3 * roads->h, .last = next_change(roads, 0) };
-	struct course *course = course_of(step->model, roads->h);
+	struct journey j = { .solvers = solvers, .states = (int)n, .before = operations_so_far(solvers),
+			     .step = 1e-3 * solvers->h, .last = next_change(solvers, 0) };
+	struct course *course = course_of(step->model, solvers->h);
 	j.y = ARRAY(double, n);
 	j.u = ARRAY(double, 2 * (size_t)step->model->system.inputs + 1);
 	j.work = ARRAY(double, n * (5 + COLUMNS));
-	running_start(roads->r, 0, start);
-	running_state(roads->r, j.y);
+	running_start(solvers->r, 0, start);
+	running_state(solvers->r, j.y);
 	gsl_error_handler_t *before = gsl_set_error_handler_off();
-	if (which == 0 || roads->stiff)
+	if (which == 0 || solvers->stiff)
 		open_driver(&j, which);
 	int status = GSL_SUCCESS;
 	keep_sample(&j, course, 0);
 	for (long k = 1; k <= course->samples && status == GSL_SUCCESS; k++) {
-		status = travel_to(&j, which, (double)k * roads->h);
+		status = travel_to(&j, which, (double)k * solvers->h);
 		keep_sample(&j, course, k);
 	}
 	if (j.driver)
@@ -268,7 +268,7 @@ struct course *road_of(struct roads *roads, int which, const double *start, cons
 	return NULL;
 }
 
-/* ---- what roads have found ---- */
+/* ---- what solvers have found ---- */
 
 double longest_need(const struct model *model)
 {

@@ -67,7 +67,7 @@ void drive_step(const struct sampled *d, long k, double *u);           /* what s
 void drive_at(const struct sampled *d, long k, double t, double *u);   /* at t in step k: inputs, then their slopes */
 void running_drive(struct running *r, const struct sampled *d, long k); /* as if k steps were done; a start follows */
 
-/* ---- reference.c: the equations as written, solved by two roads ---- */
+/* ---- reference.c: the equations as written, by two independent methods ---- */
 
 struct course {                     /* what needs are of, at t = 0, h, 2 h, ... */
 	long samples, *end;         /* after the first: all, and of each need */
@@ -77,8 +77,8 @@ struct course {                     /* what needs are of, at t = 0, h, 2 h, ... 
 };
 double longest_need(const struct model *model);              /* [s] when the last ends */
 struct course *course_of(const struct model *model, double h); /* up to there, its values not known yet */
-enum { ROADS = 2 };
-struct roads {                      /* of NAME_rhs: two methods that have nothing in common but it */
+enum { SOLVERS = 2 };
+struct solvers {                    /* of NAME_rhs: two methods that have nothing in common but it */
 	struct running *r;          /* in double */
 	double h, until;            /* [s] */
 	int changes;                /* of formula in time, at which a method starts anew */
@@ -89,10 +89,10 @@ struct roads {                      /* of NAME_rhs: two methods that have nothin
 	double *size;               /* that; NULL: not known yet */
 	const struct sampled *drive;  /* with these inputs; NULL: there are none */
 };
-/* From these states (NULL: the spec's) by the first road or the second; NULL: *why */
-struct course *road_of(struct roads *roads, int which, const double *start, const char **why);
-/* The steps of roads->r themselves, of a scheme by its tolerance; NULL: *why */
-struct course *stepped_course(const struct roads *roads, const double *start, const char **why);
+/* From these states (NULL: the spec's) by the first solver or the second; NULL: *why */
+struct course *solved_course(struct solvers *solvers, int which, const double *start, const char **why);
+/* The steps of solvers->r themselves, of a scheme by its tolerance; NULL: *why */
+struct course *stepped_course(const struct solvers *solvers, const double *start, const char **why);
 /* at samples up to a need's end: the largest difference in its output, NaN where there is one; its largest size */
 double apart(const struct course *a, const struct course *b, int need);
 double largest_of(const struct course *a, int need);
@@ -110,7 +110,7 @@ struct course *exact_course_of(const struct model *full, const struct model *ste
 
 /* ---- measure.c: how far the outputs of a step are off ---- */
 
-enum { LIMIT_MEASURED = 400000000 };   /* operations of one road, or of one step that is tried */
+enum { LIMIT_MEASURED = 400000000 };   /* operations of one solver, or of one step that is tried */
 struct trial {                      /* of a step, against a reference */
 	double multiplications, additions, calls; /* of a step and its outputs, on average */
 	double until;               /* [s] when it ended; to ask for it is counted as a part of a step */

@@ -381,7 +381,7 @@ static void count_sum(const struct expansion *x, const struct sequence *s, int k
 	}
 }
 
-/* Early part, and gains times what is newest; the gains themselves once, at k = 1 */
+/* Early part, and gains times the highest coefficients; the gains themselves once, at k = 1 */
 static void count_joined(const struct expansion *x, const struct sequence *s, int k, struct program *p)
 {
 	bool sum = s->kind == SEQUENCE_INTEGRAL || s->kind == SEQUENCE_SUM;

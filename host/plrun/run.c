@@ -105,7 +105,7 @@ static char *status_text(int status, double t, bool single)
 	if (status & PL_INACCURATE)
 		text = format("%s the last terms of the step are above the tolerance", text);
 	if (status & PL_UNDECIDED)
-		text = format("%s what is to stick and what is to slip at an event had no answer", text);
+		text = format("%s no combination of stick and slip was valid at an event", text);
 	if (status & PL_PENETRATED)
 		text = format("%s the step has ended beyond a stop", text);
 	if (status & PL_SINGULAR_MASS)
@@ -125,7 +125,7 @@ static void report_doubt(const struct instance *s, unsigned *known, bool single)
 	const char *const all[] = {             /* PL_D_GRAZING and so on */
 		"a stop was met, or all but met, so flatly that behind it they are not known",
 		"events, or peaks, fell together, and they are those of one order",
-		"what is to stick and what is to slip had no answer", "their own steps have failed"
+		"no combination of stick and slip was valid", "their own steps have failed"
 	};
 	*known |= doubt;
 	for (int i = 0; i < (int)(sizeof all / sizeof *all); i++) {

@@ -441,7 +441,8 @@ static enum fmu_result fmu_look(fmu_instance *i)
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step has met more crossings than its bound", fmu_time(d));
     }
     if (fresh & PL_UNDECIDED) {
-        return fmu_say(i, FMU_WARNING, "up to %.9g s what sticks had no answer at an event", fmu_time(d));
+        return fmu_say(i, FMU_WARNING, "up to %.9g s no combination of stick and slip was valid at an event",
+                       fmu_time(d));
     }
     if (fresh & PL_PENETRATED) {
         return fmu_say(i, FMU_WARNING, "up to %.9g s a step has ended beyond a stop", fmu_time(d));

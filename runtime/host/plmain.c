@@ -314,7 +314,7 @@ static void check_status(const void *state)
     if (status & PL_INACCURATE)
         fprintf(stderr, " the last terms of the step are above the tolerance");
     if (status & PL_UNDECIDED)
-        fprintf(stderr, " what is to stick and what is to slip at an event had no answer");
+        fprintf(stderr, " no combination of stick and slip was valid at an event");
     if (status & PL_PENETRATED)
         fprintf(stderr, " the step has ended beyond a stop");
     if (status & PL_SINGULAR_MASS)

@@ -5,9 +5,9 @@
 #     words.sh SOURCE_ROOT
 #
 # A word of the first list is no part of an identifier in gen, runtime and host (parts stand between underscores), nor
-# of one that emitted text has, a word of a string with an underscore in it. A word of the second list, which has no
-# ordinary meaning that is needed here, stands nowhere: neither in the code and its comments nor on the pages. Behind a
-# word stands what is written instead, and files (patterns of paths, from `except` on) that may have it.
+# of one that emitted text has, a word of a string with an underscore in it. Words of the second list, `_` between them,
+# which have no ordinary meaning that is needed here, stand nowhere: neither in the code and its comments nor on the
+# pages. Behind a word stands what is written instead, and files (patterns of paths, from `except` on) that may have it.
 set -u
 root=$1
 case $root in /*) ;; *) root=$PWD/$root ;; esac
@@ -22,6 +22,10 @@ bank schedule
 banks operators
 channel force_column
 channels force_columns
+collide impact
+cut split except runtime/host/digits.h
+dear expensive
+felt friction_force
 gate guard
 gates guard_rows
 gathered folded except gen/step/linear/large.c
@@ -31,6 +35,9 @@ holders constraints
 lean tangent
 losses truncation_errors
 person text
+push force_direction
+road independent_method except gen/options.c
+roads solvers
 rubs has_dry_friction
 scene assembly
 shorten modal_truncation except gen/step/certify/passes.c
@@ -38,6 +45,8 @@ shortening modal_truncation
 sketch network
 speaker written_model
 statics static_correction
+stretch segment
+strike impact
 struck impact
 survey participation
 swift fast_path
@@ -51,10 +60,15 @@ waves forcings
 END
 cat >everywhere.list <<'END'
 grips friction_forces
+kept_less_its_forced_part particular_solution_subtracted
 leftover remainder except gen/options.c
 leftovers remainder
+moves_as_a_whole rigid-body_mode
 sag chord_error
+stay_clear event-free
+stays_clear event-free
 sway cubic_error except doc/gallery.md
+way_through verified_trajectory
 END
 
 # FILE:LINE: WORD of the files that are named, for the words of identifiers.list: comments go, then what is left of a
@@ -104,10 +118,11 @@ END
 cat >everywhere.awk <<'END'
 FILENAME == list { given_up[$1] = 1; next }
 {
-	count = split(tolower($0), part, /[^a-z0-9]+/)
-	for (i = 1; i <= count; i++)
-		if (part[i] in given_up)
-			print substr(FILENAME, length(root) + 2) ":" FNR ": " part[i]
+	text = "_" tolower($0) "_"
+	gsub(/[^a-z0-9]+/, "_", text)
+	for (word in given_up)
+		if (index(text, "_" word "_"))
+			print substr(FILENAME, length(root) + 2) ":" FNR ": " word
 }
 END
 
@@ -143,7 +158,7 @@ find "$root/README.md" "$root/doc" -name '*.md' | sort >pages
 	sed 's/ .*//; s/.*/say("a $n_& b");/' identifiers.list
 	sed 's/ .*//; s/.*/\/* & *\/ say("&");/' identifiers.list
 } >sample.c
-sed 's/ .*//; s/.*/ * the &, as it was/' everywhere.list >sample.md
+sed 's/ .*//; s/.*/ * the &, as it was/; s/_/ /g' everywhere.list >sample.md
 search identifiers sample.c
 search everywhere sample.md
 [ "$(wc -l <identifiers.found)" -eq $((2 * $(wc -l <identifiers.list))) ] &&

@@ -273,7 +273,7 @@ void emit_lanes_step(struct batch *b)
 	emit_over_lanes(b, b->step, 0, shared_operand);
 }
 
-/* A state as outputs read it: of momenta the velocity, of what is kept less its forced part the whole */
+/* A state as outputs read it: of momenta the velocity, of a transient the whole, particular solution added */
 static const char *state_over_lanes(const struct batch *b, int i)
 {
 	const char *mass = factor_of_momentum(b->e, i), *kept = format("y[%d]", i);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Regions: a step that stays clear of every breakpoint, as sums with a bound for each switching function. */
+/* Regions: an event-free step, as sums with a bound for each switching function. */
 #include "inner.h"
 #include "emit/steps.h"
 #include "model/regions/switching_functions.h"

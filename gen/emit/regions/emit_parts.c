@@ -360,7 +360,7 @@ void emit_parts_step(const struct emitter *e)
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
-	if (e->step->carried.count)           /* what was set aside is in no bound */
+	if (e->step->carried.count)           /* saved states are in no bound */
 		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
 	close_function(e, "");
 	emit_questions(e);

@@ -95,7 +95,7 @@ static void emit_region_numbers(const struct emitter *e)
 		     s->regions, matrix);
 }
 
-/* By which a step sees over the whole of h that it stays clear */
+/* By which a step sees over the whole of h that it is event-free */
 static void emit_own_check(const struct emitter *e, const struct pieces *pieces, const char **function)
 {
 	int n = functions_of(e);
@@ -552,7 +552,7 @@ void emit_region_step(const struct emitter *e)
 		emit_full_step(e);
 	else
 		emit_searched_step(e);
-	if (e->step->carried.count)           /* what was set aside is in no bound */
+	if (e->step->carried.count)           /* saved states are in no bound */
 		emit_region_status(e);
 	close_function(e, "");
 }

@@ -80,7 +80,7 @@ static void emit_keep(const struct emitter *e)
 	say(e, "    }\n");
 }
 
-/* Of fixed order, all coefficients as locals: one way through but for what is kept */
+/* Of fixed order, all coefficients as locals: one path but for what is kept */
 static void emit_straight_step(const struct emitter *e)
 {
 	open_function(e, NULL, "%s", head_of_step(e));

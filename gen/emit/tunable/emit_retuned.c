@@ -174,7 +174,7 @@ static int emit_bounded(const struct emitter *e)
 	return l.count;
 }
 
-/* ---- steps that stay clear ---- */
+/* ---- event-free steps ---- */
 
 static void emit_gathering(const struct emitter *e)
 {

@@ -262,7 +262,7 @@ static void place_loads_of_slope(struct building *b, const struct impact_law *la
 		place_loads_within(b, slope->jump[k].form);
 	for (int j = 0; j < b->model->n && law->moving; j++) {
 		place_loads_within(b, slope->moving->gradient[j]);
-		place_loads_within(b, slope->moving->push[j]);
+		place_loads_within(b, slope->moving->force_direction[j]);
 	}
 	if (law->moving)
 		place_loads_within(b, slope->moving->rest);
@@ -273,7 +273,7 @@ static void place_loads_that_move(struct building *b, const struct moving_contac
 {
 	for (int j = 0; j < b->model->n && c; j++) {
 		place_loads_within(b, c->gradient[j]);
-		place_loads_within(b, c->push[j]);
+		place_loads_within(b, c->force_direction[j]);
 	}
 	if (c)
 		place_loads_within(b, c->rest);

@@ -10,7 +10,7 @@
 struct moving_contact {             /* of a velocity: its direction or the mass matrix depends on the state */
 	const struct form **gradient; /* per coordinate: factor of its velocity in it */
 	const struct form **force;  /* per coordinate: what 1 of its force adds to the left side of its equation */
-	const struct form **push;   /* per coordinate: what 1 of its force takes from the highest derivative */
+	const struct form **force_direction;  /* per coordinate: what 1 takes from the highest derivative */
 	const struct form *rest;    /* its rate where highest derivatives are 0 */
 	int only;                   /* the coordinate whose velocity alone moves it; -1: there are several */
 	double *sample;             /* the gradient somewhere: by that it is seen which depend on each other */

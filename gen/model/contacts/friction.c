@@ -410,7 +410,7 @@ void resolve_friction(struct building *b, struct switching *s)
 
 /* ---- rows ---- */
 
-/* How v' answers to the force that is held against it, g W^-1 G: above 0, or the force drives what it should hold */
+/* The Delassus entry of a friction, g W^-1 G: above 0, or the force drives what it should hold */
 static void check_response(struct building *b, const struct switching *s, const struct friction *f)
 {
 	const struct model *model = b->model;
@@ -418,7 +418,7 @@ static void check_response(struct building *b, const struct switching *s, const 
 	int n = model->n;
 	mpq_t *inverse = inverse_of_leading(system);
 	const struct form *rate = rate_of_form(b, s->function[f->function].form);
-	RATIONAL answer = ZERO, part = ZERO;
+	RATIONAL delassus = ZERO, part = ZERO;
 	for (int i = 0; i < n; i++) {
 		mpq_srcptr acts = factor_of_friction(b->segment_equations[f->segment].residual[i].form, f);
 		for (int k = 0; k < rate->terms && acts; k++) {
@@ -427,10 +427,10 @@ static void check_response(struct building *b, const struct switching *s, const 
 				continue;
 			mpq_mul(part, inverse[basis->index * n + i], rate->term[k].factor);
 			mpq_mul(part, part, acts);
-			mpq_add(answer, answer, part);
+			mpq_add(delassus, delassus, part);
 		}
 	}
-	int sign = mpq_sgn(answer) * mpq_sgn(f->factor);
+	int sign = mpq_sgn(delassus) * mpq_sgn(f->factor);
 	if (sign < 0)
 		error(f->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
 		      "this friction drives what slides instead of holding it");
@@ -582,7 +582,8 @@ void build_friction(struct building *b, struct switching *s)
 		const struct linear *system = &s->system[region->system];
 		if (!leading_inverse(system, inverse, &column))
 			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at,
-			      "its velocity has to answer to its force", "friction cannot hold what slides there");
+			      "its force has to act on its own sliding velocity",
+			      "friction cannot hold what slides there");
 		for (int k = 0; k < region->holds; k++)
 			region->hold[k].row = row_of_form(b, region->hold[k].form);
 		for (int k = 0; k < region->releases; k++)

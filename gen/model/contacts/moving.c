@@ -114,7 +114,7 @@ static void sample_gradient(void *context)
 	}
 }
 
-/* ---- the sign of what answers ---- */
+/* ---- the sign of a Delassus entry ---- */
 
 struct answering { struct building *b; const struct moving_contact *c; double value; };
 
@@ -129,9 +129,9 @@ static void answer_at_start(void *context)
 	point_at_values(point);
 	work->value = 0;
 	for (int i = 0; i < b->model->n; i++)
-		if (work->c->gradient[i]->terms && work->c->push[i]->terms)
+		if (work->c->gradient[i]->terms && work->c->force_direction[i]->terms)
 			work->value += value_at(b, point, work->c->gradient[i]) *
-				       value_at(b, point, work->c->push[i]);
+				       value_at(b, point, work->c->force_direction[i]);
 }
 
 /* 1 or -1: of what a unit force adds to the rate of its velocity at the start; 0: nothing; 2: not known */
@@ -203,7 +203,8 @@ const struct when *curved_guard(const struct building *b)
 
 bool is_moved_by(const struct impact *impact, int coord)
 {
-	return impact->moves ? impact->in->moving->push[coord]->terms > 0 : mpq_sgn(impact->in->direction[coord]) != 0;
+	return impact->moves ? impact->in->moving->force_direction[coord]->terms > 0
+			     : mpq_sgn(impact->in->direction[coord]) != 0;
 }
 
 _Noreturn void report_velocity(const struct building *b, const struct when *when, int coord)
@@ -354,7 +355,7 @@ static struct moving_contact *contact_along(struct building *b, const struct for
 				      ARRAY(const struct form *, n), form_at_rest(b, press), -1, ARRAY(double, n) };
 	for (int j = 0; j < n; j++) {
 		c->force[j] = NEW(struct form);
-		c->push[j] = form_constant(direction[j]);
+		c->force_direction[j] = form_constant(direction[j]);
 		c->sample[j] = c->gradient[j]->terms ? 1 : 0;
 	}
 	return c;
@@ -407,7 +408,7 @@ void find_moving_drag(struct building *b, struct drag *drag)
 				      drag->rate);
 	int sign = sign_at_start(b, drag->moving);
 	if (sign == 0)
-		error(drag->atom->node->at, "its velocity has to answer to its force",
+		error(drag->atom->node->at, "its force has to act on its own sliding velocity",
 		      "friction cannot hold what slides there");
 	if (sign < 0)
 		error(drag->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",

@@ -84,7 +84,7 @@ static void add_product(struct split_work *w, const struct atom *a, int k, mpq_s
 	}
 }
 
-/* e^{a t} cos(w t + p), or its sin: a force to which a mode's response is known.  What holds answers to it, too. */
+/* e^{a t} cos(w t + p), or its sin: a force to which the response of a mode, and of a constraint, is known. */
 static bool is_forcing(const struct split_work *w, const struct basis *basis)
 {
 	return basis->kind == BASIS_FORCING && basis->power == 0 && !w->b->request->loads_left &&

@@ -96,7 +96,7 @@ static void picture_free(struct picture *p)
 	discard(p->T);
 }
 
-/* ---- how large a mode's answer is ---- */
+/* ---- how large a mode's response is ---- */
 
 /* The largest |c_0 z_0 + c_1 z_1| from z = w on, of the pair of states a and b of T; HUGE_VAL: it grows */
 static double pair_peak(const struct picture *p, int a, int b, const double *w)

@@ -548,7 +548,7 @@ struct relative *relative_of(const struct model *model)
 	bool events = model->contacts.drags + model->contacts.impacts > 0 ||
 		      (model->switching && has_events(model->switching));
 	if (model->n < 2 || events || model->spec->count.multipliers > 0)
-		return NULL;        /* what sticks is held, what is struck jumps, constraints hold, as it is written */
+		return NULL;        /* friction, impacts and constraints act on coordinates as written */
 	struct dependences l = look_at_equations(model);
 	struct echelon both = l.place;
 	mpq_t **place, **rate, **sum;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: regions as they are met, what ends them, and loads at a time. */
+/* Of a verified trajectory: regions as they are met, what ends them, and loads at a time. */
 #include "inner.h"
 #include "model/tunable/elsewhere.h"
 #include "model/contacts/friction.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: where it begins. */
+/* Of a verified trajectory: where it begins. */
 #include "model/contacts/contacts.h"
 #include "event_state.h"
 

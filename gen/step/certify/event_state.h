@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What a way through crossings does where contacts are. */
+/* What a verified trajectory does where contacts are. */
 #ifndef PLGEN_EVENT_STATE_H
 #define PLGEN_EVENT_STATE_H
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: impacts, what comes to rest by them, what sticks and what slips, by the law of the
+/* Of a verified trajectory: impacts, what comes to rest by them, what sticks and what slips, by the law of the
  * target, runtime/contacts.h, over enclosures: the nearest number of each, and 0 where it has 0. What that decides
  * while it is more than rounding is not known, and more bits are asked for. */
 #include "model/contacts/contacts.h"
@@ -228,7 +228,7 @@ static real speed_of(const contacts *m, const instant *t, int k)
 	return fabs(speed) <= t->chain.most * m->calm * m->calm ? 0 : speed;
 }
 
-/* What rests does not come closer, nor what was struck without restitution. */
+/* What rests does not come closer, nor what had an impact without restitution. */
 static real speed_of_met(const contacts *m, instant *t, int k)
 {
 	const struct bound *b = &m->impact[k];
@@ -498,7 +498,7 @@ static const struct law *begin(struct trajectory *t, const struct guard *guard, 
 	return m;
 }
 
-/* What is on its guard with a speed of 0, and rested there before or was struck without restitution, has the value 0
+/* What is on its guard with a speed of 0, and rested there before or had an impact without restitution, has the value 0
  * where it is, with its slope. */
 static void note_touching(const struct law *m, struct trajectory *t)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: the list of them, and where switching functions stand. */
+/* Of a verified trajectory: the list of its crossings, and where switching functions stand. */
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 #include "certify.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: the first event of a piece, and what is behind it. */
+/* Of a verified trajectory: the first event of a piece, and what is behind it. */
 #include "model/contacts/contacts.h"
 #include "certify.h"
 #include "event_state.h"
@@ -11,7 +11,7 @@ enum {
 	SPARE_BITS = 64
 };
 
-/* ---- a piece that stays clear ---- */
+/* ---- an event-free piece ---- */
 
 static void near_of(const struct trajectory *t, const mpfi_t *x, struct near *room)
 {
@@ -188,7 +188,7 @@ int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const str
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
 					    root);
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, guard) &&
-		    bounces(t, *found)) /* struck with what was found, where it touches then */
+		    bounces(t, *found)) /* by an impact of what was found, where it touches then */
 			continue;
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
 			t->resting[guard->function] = true;     /* let go by no force */
@@ -267,7 +267,7 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 	t->piece.at_once = mpq_sgn(part) == 0 ? t->piece.at_once + 1 : 0;
 	trajectory_note(t, guard, off);
 	if (guard->impact >= 0) {
-		mpfi_clear(t->noted.list[--t->noted.count].at);    /* as what is struck it is noted again */
+		mpfi_clear(t->noted.list[--t->noted.count].at);    /* its impact is noted again */
 		known = known && trajectory_impact(t, guard, off);
 	} else {
 		trajectory_enter(t, t->region + guard->leads);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Of a way through crossings: signs of rows over x, each of which is enclosed apart from 0 or not known; and sliders
+/* Of a verified trajectory: signs of rows over x, each of which is enclosed apart from 0 or not known; and sliders
  * without mass. */
 #include "model/contacts/contacts.h"
 #include "event_state.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the files of a way through crossings share. */
+/* What the files of verified trajectories share. */
 #ifndef PLGEN_TRAJECTORY_H
 #define PLGEN_TRAJECTORY_H
 

@@ -99,7 +99,7 @@ static void make_slip(struct constraints *all, int index)
 
 /* ---- forces ---- */
 
-/* ---- where answers are numbers: each combination of those that hold has its own sum ---- */
+/* ---- where Delassus entries are numbers: each combination of those that hold has its own sum ---- */
 
 struct together {
 	struct constraints *all;
@@ -107,7 +107,7 @@ struct together {
 	bool *holds;                /* per member */
 };
 
-/* inverse: of the answers among those that hold; false: there is none */
+/* inverse: of the Delassus matrix of those that hold; false: there is none */
 static bool invert(const struct together *t, int count, const int *which, mpq_t *inverse)
 {
 	mpq_t *a = rationals((size_t)(count * count));
@@ -215,7 +215,7 @@ static void make_forces(struct constraints *all)
 
 /* ---- what the search of events looks at ---- */
 
-/* The force that it would take to hold this one, the others as they are: -(bare + answers of the others)/answer */
+/* The force that would hold this one, the others as they are: -(bare + Delassus entries of the others)/its own */
 static struct sum needed_force(const struct constraints *all, int index, long sign)
 {
 	const struct constraint *h = &all->constraint[index];
@@ -264,7 +264,7 @@ static void find_back(const struct constraints *all, int index, struct series_ho
 {
 	struct sequencing *w = all->w;
 	const struct constraint *h = &all->constraint[index];
-	const struct entry *answer = &h->delassus[index];
+	const struct entry *delassus = &h->delassus[index];
 	const int states = w->system->states;
 	RATIONAL part = ZERO;
 	hold->back = ARRAY(double, states);
@@ -274,12 +274,12 @@ static void find_back(const struct constraints *all, int index, struct series_ho
 		hold->back_watch[i] = NONE;
 		if (direction->sequence == NONE && mpq_sgn(direction->number) == 0)
 			continue;
-		if (direction->sequence == NONE && answer->sequence == NONE) {
-			mpq_div(part, direction->number, answer->number);
+		if (direction->sequence == NONE && delassus->sequence == NONE) {
+			mpq_div(part, direction->number, delassus->number);
 			hold->back[i] = round_rational(part);
 			continue;
 		}
-		hold->back_watch[i] = watch(w, quotient_by_entry(w, entry_sequence(w, direction), answer), false);
+		hold->back_watch[i] = watch(w, quotient_by_entry(w, entry_sequence(w, direction), delassus), false);
 		all->c->moves = true;
 	}
 }

@@ -160,7 +160,7 @@ static void directions_that_move(struct sequencing *w, struct constraint *h)
 	const struct form *zero = form_number(0);
 	for (int j = 0; j < w->system->n; j++) {
 		const int velocity = w->system->velocity[j], state = velocity >= 0 ? velocity : j;
-		set_entry(w, form_difference(zero, h->moving->push[j]), &h->force_direction[state]);
+		set_entry(w, form_difference(zero, h->moving->force_direction[j]), &h->force_direction[state]);
 		set_entry(w, h->moving->gradient[j], &h->row[state]);
 		h->sample[state] = h->moving->sample[j];
 	}
@@ -262,13 +262,14 @@ static void add_constraints(struct constraints *all)
 			directions_that_move(all->w, &all->constraint[i]);
 }
 
-static void check_answer(const struct constraint *h, const struct entry *answer)
+static void check_delassus(const struct constraint *h, const struct entry *delassus)
 {
-	if (!h->node || h->of != NONE || !is_number_entry(answer))
+	if (!h->node || h->of != NONE || !is_number_entry(delassus))
 		return;
-	if (mpq_sgn(answer->number) == 0)
-		error(h->node->at, "its velocity has to answer to its force", "friction cannot hold what slides there");
-	if (mpq_sgn(answer->number) > 0)
+	if (mpq_sgn(delassus->number) == 0)
+		error(h->node->at, "its force has to act on its own sliding velocity",
+		      "friction cannot hold what slides there");
+	if (mpq_sgn(delassus->number) > 0)
 		error(h->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
 		      "this friction drives what slides instead of holding it");
 }
@@ -281,7 +282,7 @@ static void find_all_delassus(struct constraints *all)
 		for (int j = 0; j < all->constraints; j++)
 			dot_entries(all->w, all->w->system->states, h->row, all->constraint[j].force_direction,
 				    &h->delassus[j]);
-		check_answer(h, &h->delassus[i]);
+		check_delassus(h, &h->delassus[i]);
 	}
 }
 

@@ -23,8 +23,9 @@ static double dot_samples(const struct constraints *all, int a, int b)
 /* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
 static int side_beside(const struct constraints *all, int friction, int contact)
 {
-	const struct entry *answer = &all->constraint[friction].delassus[contact];
-	bool along = is_number_entry(answer) ? mpq_sgn(answer->number) < 0 : dot_samples(all, friction, contact) > 0;
+	const struct entry *delassus = &all->constraint[friction].delassus[contact];
+	bool along = is_number_entry(delassus) ? mpq_sgn(delassus->number) < 0
+					       : dot_samples(all, friction, contact) > 0;
 	return along == all->c->hold[friction].above ? 1 : -1;
 }
 
@@ -234,7 +235,7 @@ static int force_on(const struct joined *g, int acceleration, int k)
 }
 
 /* What the slopes of the other states are, as they stand in its rate: by a force of 1, or without any */
-static void answer_beside(const struct joined *g, int k, const struct constraint *of, struct entry *answer)
+static void delassus_beside(const struct joined *g, int k, const struct constraint *of, struct entry *delassus)
 {
 	struct sequencing *w = g->all->w;
 	const struct constraint *h = &g->all->constraint[g->member[k]];
@@ -244,7 +245,7 @@ static void answer_beside(const struct joined *g, int k, const struct constraint
 			beside[i] = of->force_direction[i];
 		else if (!g->coupled[i] && !is_zero_entry(&h->row[i]))
 			beside[i].sequence = bare_slope(w, i);
-	dot_entries(w, w->system->states, h->row, beside, answer);
+	dot_entries(w, w->system->states, h->row, beside, delassus);
 }
 
 /* The rate without what the system solves for, reversed */
@@ -255,7 +256,7 @@ static int right_where_held(const struct joined *g, int k)
 	struct entry *beside = entries_new(1);
 	struct sum sum = { 0 };
 	RATIONAL minus = RATIO(-1, 1);
-	answer_beside(g, k, NULL, beside);
+	delassus_beside(g, k, NULL, beside);
 	sum_add(&sum, TERM_SEQUENCE, entry_sequence(w, beside), 0, minus);
 	if (h->moving)
 		sum_add_form(w, &sum, h->moving->rest, minus);
@@ -343,11 +344,11 @@ static void add_member(struct joined *g, int k)
 		e->matrix[i * e->n + row] = force_on(g, i, k);
 	}
 	for (int l = 0; l < g->members; l++) {
-		struct entry *answer = entries_new(1);
-		answer_beside(g, k, &all->constraint[g->member[l]], answer);
-		if (l == k || !is_zero_entry(answer))
+		struct entry *delassus = entries_new(1);
+		delassus_beside(g, k, &all->constraint[g->member[l]], delassus);
+		if (l == k || !is_zero_entry(delassus))
 			e->matrix[row * e->n + g->accelerations + l] = where_it_holds(
-				all, g->member[k], entry_sequence(all->w, answer), l == k ? one : all->none);
+				all, g->member[k], entry_sequence(all->w, delassus), l == k ? one : all->none);
 	}
 	e->right[row] = where_it_holds(all, g->member[k], right_where_held(g, k), h->slips == NONE ? slips : h->slips);
 }

@@ -78,7 +78,7 @@ static void add_response(struct filling *f, struct response *response, mpq_srcpt
 	mpq_set(f->response[f->responses++].start, start);
 }
 
-/* Two who answer what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
+/* Two who say what a number is made of: entries of e^{A tau} as a whole, or sums of residues. */
 enum sought { SOUGHT_STATE, SOUGHT_INPUT, SOUGHT_LOAD, SOUGHT_PHI_WEIGHT, SOUGHT };
 typedef void evaluator(struct filling *f, int a, int b);
 

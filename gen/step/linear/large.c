@@ -119,7 +119,7 @@ static struct group gathered(const struct group *block, int count, const int *wh
 	return g;
 }
 
-/* Rows read the state as it was when they began: what is carried is set aside before, which they would miss. */
+/* Rows read the state as it was when they began: what is carried is saved before, which they would miss. */
 static bool is_carried(const struct step *step, const struct group *g)
 {
 	bool any = false;

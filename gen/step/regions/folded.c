@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Of regions whose tables an instance has: what of x stays from step to step, 1 and held params, and what is never
- * above 1 is gathered beforehand, so that a step that stays clear has sums over the rest alone. */
+ * above 1 is folded beforehand, so that an event-free step has sums over the rest alone. */
 #include "inner.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"

@@ -254,8 +254,8 @@ struct guards guards_of(const struct step *step, const struct pieces *pieces)
 	return g;
 }
 
-/* From h down to 2^-23 h, where they rest, bounces become shorter by e each. Several contacts, which strike each other,
- * take more. */
+/* From h down to 2^-23 h, where they rest, bounces become shorter by e each. Several contacts whose impacts act on each
+ * other, take more. */
 static int bounces_in_step(const struct model *model)
 {
 	enum { MOST = 480, SHORTER = 23 };

@@ -213,7 +213,7 @@ static void fill_bounds(const struct step *step, const struct pieces *pieces, in
 	piece->reach = reach_of_rows(step, branch, piece->slopes, functions, piece->row);
 }
 
-/* ---- a step over the whole of h, which most often is seen in a line to stay clear ---- */
+/* ---- a step over the whole of h, which most often a bound shows to be event-free ---- */
 
 /* The least and the largest that each switching function may be: region by region, switching functions of each */
 static void fill_intervals(const struct step *step, struct pieces *pieces)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* How the newest coefficients enter the next ones. The k-th of a sum, product, quotient or root is linear in the k-th
+/* How the highest coefficients enter the next ones. The k-th of a sum, product, quotient or root is linear in the k-th
  * of what it is made of, with factors that are the same for all k >= 1: the derivatives at the start. So the k-th of
  * what follows from a few others is an early part, of coefficients before k, and these factors, its gains, times their
  * k-th. The next coefficient of a state then waits for a multiplication and an addition, however deep the switching
@@ -225,7 +225,7 @@ int place_of_gain(const struct sequence *s, int other)
 	return place < s->gains ? place : NONE;
 }
 
-/* Some of the newest of a term is that of another */
+/* Whether the highest coefficient of a term reads that of another sequence */
 static bool reads(const struct expansion *x, const struct sequence_term *term, int other)
 {
 	bool product = term->kind == TERM_PRODUCT, found = false;

@@ -29,7 +29,7 @@ struct lines *lines_of(const struct expansion *x, int states);
 int stage_value(struct lines *l, struct stage_value value);              /* its number, made once */
 int stage_factors(struct lines *l, const double *factor, int count);     /* likewise; behind `count` they are 0 */
 
-/* ---- implicit.c: how the newest coefficients enter the next ones ---- */
+/* ---- implicit.c: how the highest coefficients enter the next ones ---- */
 
 void find_implicit(struct expansion *x);
 int  place_of_gain(const struct sequence *s, int other);     /* NONE: there is no such gain */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The coefficients of a series as nodes of a tape, each from those before it (Griewank and Walther, Evaluating
- * Derivatives, 2008, chapter 13). What is newest decides how long the next one waits, so it is added last, and enters
- * by its gains (implicit.c). */
+ * Derivatives, 2008, chapter 13). The next one waits for the highest coefficients, so these are added last, and enter
+ * by their gains (implicit.c). */
 #include "recurrences.h"
 #include "step/exponential/recipe.h"
 #include "step/tapes.h"
@@ -24,8 +24,8 @@ static tape_ref pair(struct recurrences *r, int a, int i, int b, int j)
 	return first == TAPE_NONE ? first : times(r->t, first, recurrence(r, b, j));
 }
 
-/* What is new of one sequence, times the first of another with its factor */
-static tape_ref newest(struct recurrences *r, tape_ref latest, struct multiplier factor, int other)
+/* The highest coefficient of one sequence, times the first of another with its factor */
+static tape_ref highest(struct recurrences *r, tape_ref latest, struct multiplier factor, int other)
 {
 	if (latest == TAPE_NONE)
 		return latest;
@@ -104,7 +104,7 @@ static bool add_known(struct recurrences *r, struct list *sum, const struct sequ
 	return true;
 }
 
-/* What a term has at k, of parts of what it is made of: what is newest into `last` */
+/* What a term has at k, of parts of its operands: the highest coefficients into `last` */
 void recurrence_add_term(struct recurrences *r, struct list *sum, struct list *last, const struct sequence_term *term,
 		     int k, part_of *part)
 {
@@ -118,9 +118,9 @@ void recurrence_add_term(struct recurrences *r, struct list *sum, struct list *l
 		add(sum, recurrence_scaled(r, factor, pair(r, term->a, 0, term->b, 0)));
 	} else {
 		add_old(r, sum, term->a, term->b, k, factor);
-		add(last, newest(r, part(r, term->a, k), square ? twice(factor) : factor, term->b));
+		add(last, highest(r, part(r, term->a, k), square ? twice(factor) : factor, term->b));
 		if (!square)
-			add(last, newest(r, part(r, term->b, k), factor, term->a));
+			add(last, highest(r, part(r, term->b, k), factor, term->a));
 	}
 }
 
@@ -200,8 +200,8 @@ static tape_ref root(struct recurrences *r, int sequence, const struct sequence 
 static tape_ref power(struct recurrences *r, int sequence, const struct sequence *s, int k, part_of *part)
 {
 	struct list sum = { 0 };
-	tape_ref newest = times(r->t, part(r, s->a, k), recurrence(r, sequence, 0));
-	add(&sum, tape_scaled(r->t, recurrence_rounded(s->exponent), newest));
+	tape_ref last = times(r->t, part(r, s->a, k), recurrence(r, sequence, 0));
+	add(&sum, tape_scaled(r->t, recurrence_rounded(s->exponent), last));
 	if (in_loop(k))
 		add(&sum, summed(r, STAGE_POWER, s->a, sequence, k, recurrence_rounded(s->exponent)));
 	for (int j = 1; j < k && !in_loop(k); j++) {
@@ -229,7 +229,7 @@ static tape_ref made_of(struct recurrences *r, int sequence, const struct sequen
 	return all;
 }
 
-/* The part of the k-th that the newest of other sequences are not in; TAPE_NONE: there is none */
+/* The part of the k-th that the highest coefficients of other sequences are not in; TAPE_NONE: there is none */
 static tape_ref early(struct recurrences *r, int sequence, int k)
 {
 	const struct sequence *s = sequence_of(r, sequence);
@@ -294,7 +294,7 @@ static tape_ref update_times(struct recurrences *r, int sequence, int k, struct 
 			     part_of *change_of)
 {
 	tape_ref change = change_of(r, sequence, k);
-	return change == TAPE_NONE ? change : newest(r, change, factor, other);
+	return change == TAPE_NONE ? change : highest(r, change, factor, other);
 }
 
 static tape_ref update_of_sum(struct recurrences *r, const struct sequence *s, int k, part_of *change_of)

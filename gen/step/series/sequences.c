@@ -151,7 +151,7 @@ static int quotient_sequence(struct sequencing *w, int a, int b)
 	return new_sequence(w, (struct sequence){ .kind = SEQUENCE_QUOTIENT, .state = NONE, .a = a, .b = b });
 }
 
-/* A product that nothing else reads stands in the sum itself: its newest terms are then added last. */
+/* A product that nothing else reads stands in the sum itself: its highest coefficients are then added last. */
 static bool add_product(struct sequencing *w, struct sum *sum, const struct atom *atom, mpq_srcptr factor)
 {
 	int last;

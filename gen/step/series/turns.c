@@ -75,7 +75,7 @@ struct multiplier recurrence_factor_at(const struct recurrences *r, const struct
 
 /* ---- sums ---- */
 
-/* Oldest first, the newest added last, in two chains where it is long; of nothing TAPE_NONE */
+/* Lowest order first, the highest added last, in two chains where it is long; of nothing TAPE_NONE */
 tape_ref recurrence_chain(struct tape *t, const struct list *list)
 {
 	tape_ref sum[2] = { TAPE_NONE, TAPE_NONE };

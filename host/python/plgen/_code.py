@@ -24,13 +24,13 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (1, 'the step has left the finite numbers'),
           (4, 'the step needed more substeps than its bound'),
           (8, 'the last terms of the step are above the tolerance'),
-          (16, 'what is to stick and what is to slip at an event had no answer'),
+          (16, 'no combination of stick and slip was valid at an event'),
           (32, 'a state has left the range that the spec gives it'),
           (64, 'the step has ended beyond a stop'),
           (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
 DOUBTS = ('a stop was met, or all but met, so flatly that behind it they are not known',
           'events fell together, and they are those of one order',
-          'what is to stick and what is to slip had no answer', 'their own steps have failed')
+          'no combination of stick and slip was valid', 'their own steps have failed')
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
            32: 'these values are outside of the ranges that the spec gives, or make other regions: a restitution not '
