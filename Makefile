@@ -93,19 +93,14 @@ bench: tests
 	sh bench/growth.sh $(BUILD)
 	$(BUILD)/bench/apply
 	sh bench/run.sh $(BUILD)
-	sh bench/beam.sh $(BUILD)
-	sh bench/switching.sh $(BUILD)
-	$(BUILD)/bench/crossings
-	sh bench/contacts.sh $(BUILD)
+	sh bench/steps.sh $(BUILD)
 	sh bench/retune.sh $(BUILD)
-	sh bench/retuned.sh $(BUILD)
 	sh bench/retune_blocks.sh $(BUILD)
 	sh bench/sweep.sh $(BUILD)
 	sh bench/large.sh $(BUILD)
 	sh bench/rows.sh $(BUILD)
 	sh bench/python.sh $(BUILD)
 	sh bench/limits/limits.sh $(BUILD)
-	sh bench/loads.sh $(BUILD)
 	sh bench/spectrum.sh $(BUILD)
 
 # Speed against accuracy, and stability where methods fail: charts/index.html with its pictures and tables. Half an

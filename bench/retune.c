@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* retune NAME DAMPING STEP ...: time of NAME_retune for two masses at each of these steps of h, beside that of GSL's
- * exponential of the same matrix in double, and of a step with tunable params beside one with fixed constants: in
- * short samples that take turns so that all meet the same machine; prints medians and ratios, and how far both
- * exponentials are apart. */
-#include "plain_pl.h"
+ * exponential of the same matrix in double: in short samples that take turns so that both meet the same machine; prints
+ * medians and ratios, and how far both exponentials are apart. */
 #include "tuned_pl.h"
 #include "timing.h"
 
@@ -20,7 +18,7 @@ typedef double real;
 #define REAL_NAME "double"
 #endif
 
-enum { SAMPLES = 301, RETUNES = 20, STEPS = 200, STATES = TUNED_STATES };
+enum { SAMPLES = 301, RETUNES = 20, STATES = TUNED_STATES };
 enum { COLUMNS = sizeof tuned_nominal.step[0] / sizeof(real) };
 
 /* Masses and springs of the models, and what drives sdcsf */
@@ -69,25 +67,6 @@ static double sample_gsl(double A[COLUMNS][COLUMNS], double h, double E[COLUMNS]
 	return (nanoseconds() - start) / RETUNES;
 }
 
-/* From the initial values each time: what is damped would go below the normal numbers */
-static double sample_tuned(tuned *s)
-{
-	tuned_init(s);
-	double start = nanoseconds();
-	for (int k = 0; k < STEPS; k++)
-		tuned_step(s);
-	return (nanoseconds() - start) / STEPS;
-}
-
-static double sample_plain(plain *s)
-{
-	plain_init(s);
-	double start = nanoseconds();
-	for (int k = 0; k < STEPS; k++)
-		plain_step(s);
-	return (nanoseconds() - start) / STEPS;
-}
-
 /* The largest difference, as part of the largest entry of its column's block: states, loads */
 static double apart(const tuned_coeffs *coeffs, double E[COLUMNS][COLUMNS])
 {
@@ -107,11 +86,8 @@ static double apart(const tuned_coeffs *coeffs, double E[COLUMNS][COLUMNS])
 
 int main(int argc, char **argv)
 {
-	static double retune[SAMPLES], gsl[SAMPLES], step[SAMPLES], fixed[SAMPLES], A[COLUMNS][COLUMNS],
-		E[COLUMNS][COLUMNS];
+	static double retune[SAMPLES], gsl[SAMPLES], A[COLUMNS][COLUMNS], E[COLUMNS][COLUMNS];
 	tuned_coeffs coeffs = tuned_nominal;
-	tuned s;
-	plain p;
 	if (argc < 4)
 		return 2;
 	slopes(atof(argv[2]), A);
@@ -126,12 +102,5 @@ int main(int argc, char **argv)
 		       "that; they differ by %.1e\n", argv[1], REAL_NAME, sqrt(300.0) * h, ours, theirs, theirs / ours,
 		       apart(&coeffs, E));
 	}
-	for (int k = 0; k < SAMPLES; k++) {
-		step[k] = sample_tuned(&s);
-		fixed[k] = sample_plain(&p);
-	}
-	double tunable = median(step), constant = median(fixed);
-	printf("%-6s %-6s a step with tunable params %6.2f ns, with fixed constants %6.2f ns, ratio %.2f\n", argv[1],
-	       REAL_NAME, tunable, constant, tunable / constant);
 	return 0;
 }

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# retune.sh BUILD: what NAME_retune costs for two masses undamped, damped and driven, at small and large |pole| h, and
-# a step with tunable params, beside GSL's matrix exponential and a step with fixed constants.
+# retune.sh BUILD: what NAME_retune costs for two masses undamped, damped and driven, at small and large |pole| h,
+# beside GSL's matrix exponential.
 set -e
 build=$1
 work=$(mktemp -d)
@@ -13,12 +13,10 @@ for real in double float; do
 		name=${case%%:*} tunable=${case##*:} damping=${case#*:}
 		{ cat "models/$name.spec"; echo; echo "tunable $tunable"; } >"$work/$name.spec"
 		# the form in which a retuned step is taken
-		"$build/plgen" --fast --real $real --form delta --prefix plain -o "$work/plain_pl.c" "models/$name.spec"
 		"$build/plgen" --fast --real $real --form delta --prefix tuned -o "$work/tuned_pl.c" "$work/$name.spec"
 		# shellcheck disable=SC2046
-		gcc -std=gnu11 -O2 $option -Iruntime -I"$work" bench/retune.c "$work/plain_pl.c" "$work/tuned_pl.c" \
-			runtime/*.c $(pkg-config --cflags --libs gsl) \
-			-o "$work/retune"
+		gcc -std=gnu11 -O2 $option -Iruntime -I"$work" bench/retune.c "$work/tuned_pl.c" runtime/*.c \
+			$(pkg-config --cflags --libs gsl) -o "$work/retune"
 		"$work/retune" $name "${damping%:*}" 0.01 0.05 0.3 3
 	done
 done

@@ -3,17 +3,19 @@
 # stiff.sh BUILD: stiff models whose state chooses formulas, by radau and auto beside CVODE's BDF with root finding.
 set -e
 build=$1
+root=$PWD
+. tests/cases.sh
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
 for name in pressed flipping braked; do
+	spec=$(cd "$work" && path_of "tests/series_switching/$name.spec")
 	for case in radau:4 radau:7 radau:10 radau:13 auto:4 auto:7 auto:10; do
 		scheme=${case%:*}
 		digits=${case#*:}
 		prefix=${name}_$scheme$digits
 		"$build/plgen" --fast --prefix "$prefix" --scheme "$scheme" --tolerance "1e-$digits" \
-			-o "$work/${prefix}_pl.c" \
-			"tests/series_switching/$name.spec" 2>/dev/null
+			-o "$work/${prefix}_pl.c" "$spec" 2>/dev/null
 		echo "extern const pl_model ${prefix}_model;" >>"$work/declared"
 		echo "	{\"$name\", \"$scheme\", $digits, &${prefix}_model}," >>"$work/table"
 	done
