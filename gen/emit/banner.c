@@ -171,8 +171,8 @@ static void banner_cost(const struct emitter *e)
 	const char *of = !e->step->collocation ? format("form %s", step_form_text(e->step))
 		       : e->step->taylor.expansion ? "a series, which may serve several steps"
 		       : "an iteration of Newton's method,\n * of which an internal step takes two to four";
-	say(e, "%s * One step of h = %s s, %s: %s.\n", e->prints->step_note ? e->prints->step_note : "",
-	    readable_text(e->model->h), of, operations_text(e->step));
+	say(e, " * One step of h = %s s, %s%s%s.\n", readable_text(e->model->h), of,
+	    e->prints->step_note ? e->prints->step_note : ": ", operations_text(e->step));
 	banner_board(e);
 	banner_words(e, text_peaks);
 	if (e->step->refresh && e->step->refresh->terms)

@@ -225,7 +225,7 @@ static void emit_worst(const struct emitter *e)
 						 "if defined __arm__ && defined __ARM_FP && (__ARM_FP & 8)" };
 	if (unbounded_text(e->step))
 		return;
-	say(e, "/* Instructions that no step takes more of, while no number is subnormal; arm-none-eabi-gcc -O2 */\n");
+	say(e, "/* Bound on the instructions of a step by arm-none-eabi-gcc -O2, while no number is subnormal */\n");
 	for (int t = 2; t >= 0; t--)
 		say(e, "#%s\n"
 		       "#define $N_STEP_MAX %.0f  /* %s */\n",

@@ -74,7 +74,7 @@ static void emit_later_region_step(const struct emitter *e)
 
 /* What both kinds of regions have */
 #define OF_REGIONS \
-	.step_note = " * An event-free step, at most:\n", \
+	.step_note = ", without events: at most ", \
 	.constants = emit_event_limit, \
 	.status_note = "0, or bits: PL_NOT_FINITE, PL_TOO_MANY_EVENTS", .declare_state = emit_crossing_declarations, \
 	.places = always

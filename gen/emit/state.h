@@ -11,7 +11,7 @@ struct reads;
 /* ---- flows.c: what the C of a step has by its flow and events, in the order of the C ---- */
 
 struct printers {                       /* NULL: none of its own */
-	const char *step_note;      /* before what a step costs */
+	const char *step_note;      /* before what a step costs; NULL: ": " */
 	/* Behind that, in the C alone: how an event is found */
 	void (*events)(const struct emitter *e);
 	/* The header: constants; types before that of the state; at its end; functions */

@@ -81,11 +81,12 @@ void open_function(const struct emitter *e, const char *note, const char *layout
 
 void close_function(const struct emitter *e, const char *unread)
 {
-	for (size_t length; *(unread += strspn(unread, ", ")); unread += length) {
+	const char *before = "    ";
+	for (size_t length; *(unread += strspn(unread, ", ")); unread += length, before = " ") {
 		length = strcspn(unread, ", ");
-		say(e, "    (void)%.*s;\n", (int)length, unread);
+		say(e, "%s(void)%.*s;", before, (int)length, unread);
 	}
-	say(e, "}\n");
+	say(e, "%s}\n", *before && !before[1] ? "\n" : "");
 }
 
 void emit_if_any(void (*printer)(const struct emitter *e), const struct emitter *e)

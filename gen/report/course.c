@@ -168,7 +168,7 @@ const char *operations_text(const struct step *step)
 		text = format("%s; every %d steps, for the functions of the loads, %d and %d more", text,
 			      step->refresh->steps, p->forcing_multiplications, p->forcing_additions);
 	else if (p->forcing_multiplications)
-		text = format("%s (%d and %d of them for the functions of the loads)", text,
+		text = format("%s (%d and %d of them for loads)", text,
 			      p->forcing_multiplications, p->forcing_additions);
 	return p->calls ? format("%s, %d calls of the model's own functions", text, p->calls) : text;
 }

@@ -172,7 +172,8 @@ static void print_determinant(FILE *to, const struct step *step)
 	int length = resolvent_determinant(step->written)->length;
 	mpq_t *B = rationals(length);
 	characteristic_polynomial(step->written, B);
-	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>B(s) = %s</pre>\n", polynomial_text(length, B));
+	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>    B(s) = %s</pre>\n",
+		polynomial_text(length, B));
 }
 
 static void print_matrices(FILE *to, const struct step *step)

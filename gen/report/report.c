@@ -52,22 +52,29 @@ void json_pole_list(FILE *to, int count, const struct pole_report *pole)
 	fputs("]", to);
 }
 
+static const char *power_text(mpq_srcptr c, int k, bool first)
+{
+	RATIONAL size = ZERO;
+	mpq_abs(size, c);
+	const char *factor = k > 0 && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
+	const char *power = k == 0 ? "" : k == 1 ? "s" : format("s^%d", k);
+	const char *sign = mpq_sgn(c) < 0 ? first ? "-" : " - " : first ? "" : " + ";
+	return format("%s%s%s%s", sign, factor, *factor && k ? " " : "", power);
+}
+
+/* Lines of up to 100 columns, below what stands behind `B(s) = ` */
 const char *polynomial_text(int length, const mpq_t *c)
 {
+	enum { INDENT = 11, COLUMNS = 100 };
 	const char *text = "";
+	size_t column = INDENT;
 	for (int k = length - 1; k >= 0; k--) {
 		if (mpq_sgn(c[k]) == 0)
 			continue;
-		bool negative = mpq_sgn(c[k]) < 0, first = *text == 0;
-		RATIONAL size = ZERO;
-		mpq_abs(size, c[k]);
-		const char *factor = k > 0 && mpq_cmp_ui(size, 1, 1) == 0 ? "" : readable_text(size);
-		const char *power = k == 0 ? "" : k == 1 ? "s" : format("s^%d", k);
-		text = format("%s%s%s%s%s", text,
-			      first      ? (negative ? "-" : "")
-			      : negative ? " - "
-					 : " + ",
-			      factor, *factor && k ? " " : "", power);
+		const char *term = power_text(c[k], k, *text == 0);
+		bool full = column + strlen(term) > COLUMNS;
+		text = full ? format("%s\n%*s%s", text, INDENT - 1, "", term) : format("%s%s", text, term);
+		column = (full ? INDENT - 1 : column) + strlen(term);
 	}
 	return text;
 }

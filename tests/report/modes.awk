@@ -91,9 +91,10 @@ what == "modes" && /"frequency_hz":/ {
     near("damping ratio " row, $2, zeta[k], 1e-14)
 }
 
-what == "polynomial" && /B\(s\) = / {
-    sub(/.*B\(s\) = /, "")
-    for (i = 1; i <= NF; i++) {
+what == "polynomial" {                      # further lines begin with a sign
+    inside = sub(/.*B\(s\) = /, "") || inside && /^( \*)? +[-+] /
+    sub(/^ \*/, "")
+    for (i = 1; i <= NF && inside; i++) {
         if ($i == "+" || $i == "-")
             continue
         sign = $(i - 1) == "-" && i > 1 ? -1 : 1

@@ -251,7 +251,7 @@ static const char *short_text(const char *text, const char *local, int function)
 static void emit_side(const struct emitter *e, bool first, const char *from, const char *to, int function, bool upper,
 		      const char *than)
 {
-	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                ", from,
+	say(e, "%s(%s %c %s ? %s : %s) %c off%d %c %s", first ? "" : " &&\n                     ", from,
 	    upper ? '>' : '<', to, from, to, upper ? '+' : '-', function, upper ? '<' : '>', than);
 }
 
@@ -260,7 +260,7 @@ static void emit_inside(const struct emitter *e, const struct pieces *p, const s
 {
 	const struct switching *s = e->model->switching;
 	bool first = true;
-	say(e, "        clear = ");
+	say(e, "        event_free = ");
 	for (int i = 0, edge = 0; i < s->functions; edge += s->function[i++].breaks + 2) {
 		int k = leader(l, i), interval = interval_of(s, region, i), at = region * s->functions + i;
 		const char *from = short_text(row_text(&l->row, k, l->x, NULL, 0), "from", k),
@@ -301,7 +301,7 @@ static void emit_region_case(const struct emitter *e, const struct pieces *p, co
 static void emit_case_begin(const struct emitter *e, const char *locals)
 {
 	say(e, "    double %s;\n"
-	       "    int clear = 0;\n"
+	       "    int event_free = 0;\n"
 	       "    switch (s->contact$p.region) {\n", locals);
 }
 
@@ -310,7 +310,7 @@ static void emit_case_end(const struct emitter *e)
 	say(e, "    default:\n"
 	       "        break;\n"
 	       "    }\n"
-	       "    if (clear && ");
+	       "    if (event_free && ");
 }
 
 /* ends, and how far switching functions may be off their chords: in each region its own numbers */
@@ -331,6 +331,7 @@ static void emit_cases(const struct emitter *e, const struct pieces *p, const ch
 		if (strchr(row_text(&l.row, i, l.end, NULL, 0), ' '))
 			list = format("%s, to%d", list, i);
 	}
+	say(e, "    /* In each region: the state after h; how far a switching function may leave its chord */\n");
 	emit_case_begin(e, list);
 	for (int r = 0; r < s->regions; r++)
 		if (s->region[r].possible)

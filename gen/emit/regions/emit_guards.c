@@ -189,6 +189,6 @@ void emit_friction_forces(const struct emitter *e)
 	for (int r = 0; r < s->regions; r++)
 		row[r] = friction_force + r * s->transmitted_forces * size;
 	put_matrices(e, "friction_forces",
-		     "In each region what outputs read of friction, and of what rests: this row times x", s->regions,
-		     s->transmitted_forces, size, row, name);
+		     "Forces of friction and of contacts at rest that outputs read, in each region: this row times x",
+		     s->regions, s->transmitted_forces, size, row, name);
 }

@@ -481,7 +481,7 @@ static const char *event_text(const struct emitter *e)
 }
 
 /* How most steps are seen to have none, and what else there is before the search */
-static void note_clear_steps(const struct emitter *e, const char *function, const char *second)
+static void note_event_free_steps(const struct emitter *e, const char *function, const char *second)
 {
 	if (e->step->regions.event_check.is_made)
 		note(e,
@@ -500,9 +500,9 @@ static void note_clear_steps(const struct emitter *e, const char *function, cons
 
 static void note_search(const struct emitter *e, const char *function, const char *of)
 {
-	note(e, "%d. $o_seek, the search (%s): the step goes in pieces of d = h/2^halvings or longer ones. A piece is "
-		"clear by its chord, with the bound d^2/8 |%s''| (%s), or by the cubic through its ends and slopes "
-		"(%s), with d^4/384 |%s''''| (%s). In a piece that is not clear %s is a Taylor polynomial in time: "
+	note(e, "%d. $o_seek, the search (%s): the step goes in pieces of d = h/2^halvings or longer ones. A bound "
+		"shows a piece to be event-free: of the chord, d^2/8 |%s''| (%s), or of the cubic through its ends "
+		"and slopes (%s), d^4/384 |%s''''| (%s). In any other piece %s is a Taylor polynomial in time: "
 		"intervals are halved until bounds of its derivatives show that there is no root or one, so none is "
 		"stepped over, and the first is computed to rounding.",
 	     e->step->regions.event_check.fast_path ? 3 : 2, has_guards(e) ? "guards.c" : "crossings.c", function,
@@ -519,7 +519,7 @@ void emit_event_note(const struct emitter *e)
 		"so that a step is a product with e^{A h} (%s).", table(e, "slopes"), table(e, "pieces"));
 	note(e, "Switching functions e = row . x (%s) divide the states into regions, by their breakpoints (%s). %s",
 	     table(e, "row"), table(e, "breakpoint"), event_text(e));
-	note_clear_steps(e, function, table(e, format("%schord_error", of)));
+	note_event_free_steps(e, function, table(e, format("%schord_error", of)));
 	note_search(e, function, of);
 	if (regions_of(e)->cached)
 		note(e, "Matrices are made when their regions are met: A as a sum ($o_sum), e^{A h} and bounds of it, "

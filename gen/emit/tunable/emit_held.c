@@ -31,12 +31,13 @@ void emit_held_types(const struct emitter *e)
 {
 	if (!tunables_of(e->model))
 		return;
-	const char *what = e->model->params.held ? "what the equations and outputs read"
-			   : format("what a step multiplies with: z is the states, load states%s, inputs%s",
+	const char *what = e->model->params.held ? "What the equations and outputs read"
+			   : format("Factors of a step by z: states, load states%s, inputs%s",
 				    loads_change(e->system) ? " in each segment of time" : "",
 				    e->ramps ? ", of a ramp its value before the step, then after it" : "");
 	say(e, "enum { $N_PARAMS = %d };  /* tunable: %s */\n"
-	       "typedef struct $n_coeffs $n_coeffs;  /* %s */\n"
+	       "/* %s */\n"
+	       "typedef struct $n_coeffs $n_coeffs;\n"
 	       "struct $n_coeffs {\n", tunables_of(e->model)->given, param_list(e), what);
 	declare_members(e, emit_members);
 	say(e, "};\n"
