@@ -90,7 +90,6 @@ check-long: tests
 bench: tests
 	ninja -C $(BUILD) benchmarks
 	sh bench/generate.sh $(BUILD)
-	sh bench/growth.sh $(BUILD)
 	$(BUILD)/bench/apply
 	sh bench/run.sh $(BUILD)
 	sh bench/steps.sh $(BUILD)
