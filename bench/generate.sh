@@ -63,6 +63,6 @@ for case in chain:'1 2 4 6 7 8 12 15 20 30 40' dense:'1 2 4 6 7 8 12 15 20 30 60
 	for n in ${case#*:}; do
 		"$kind" "$n" >"$work/$kind.spec"
 		"$build/bench/clock" 5 "$work/empty" -- "$build/plgen" "$work/$kind.spec" |
-			awk -v n="$n" '/^plgen/ { for (i = 1; i <= NF; i++) if ($i == "median") printf "%6d %s\n", n, $(i + 1) }'
+			awk -v n="$n" '/^plgen/ { sub(/.*median */, ""); printf "%6d %s\n", n, $1 }'
 	done
 done

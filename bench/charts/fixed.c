@@ -26,6 +26,11 @@
 #define DORMAND_SLOPES slope
 #include "dormand_step.h"
 
+#define EXPLICIT_TYPE struct fixed
+#define EXPLICIT_MOST MOST_ENTRIES
+#define EXPLICIT_SLOPES slope
+#include "explicit_step.h"
+
 /* ---- explicit methods ---- */
 
 INLINE bool euler(struct fixed *f, struct part *p, double t, double *state)
@@ -38,64 +43,16 @@ INLINE bool euler(struct fixed *f, struct part *p, double t, double *state)
 }
 MARCH(euler)
 
-INLINE bool heun(struct fixed *f, struct part *p, double t, double *state)
-{
-	const int size = 2 * f->n;
-	const double h = p->h;
-	double *restrict k1 = f->work[0], *restrict k2 = f->work[1], *restrict x = f->work[2];
-	slope(f, t, state, k1);
-	for (int i = 0; i < size; i++)
-		x[i] = state[i] + h * k1[i];
-	slope(f, t + h, x, k2);
-	for (int i = 0; i < size; i++)
-		state[i] += 0.5 * h * (k1[i] + k2[i]);
-	return true;
-}
-MARCH(heun)
-
-INLINE bool rk4(struct fixed *f, struct part *p, double t, double *state)
-{
-	const int size = 2 * f->n;
-	const double h = p->h, half = 0.5 * h, sixth = h / 6.0;
-	double *restrict k1 = f->work[0], *restrict k2 = f->work[1], *restrict k3 = f->work[2],
-		*restrict k4 = f->work[3], *restrict x = f->work[4];
-	slope(f, t, state, k1);
-	for (int i = 0; i < size; i++)
-		x[i] = state[i] + half * k1[i];
-	slope(f, t + half, x, k2);
-	for (int i = 0; i < size; i++)
-		x[i] = state[i] + half * k2[i];
-	slope(f, t + half, x, k3);
-	for (int i = 0; i < size; i++)
-		x[i] = state[i] + h * k3[i];
-	slope(f, t + h, x, k4);
-	for (int i = 0; i < size; i++)
-		state[i] += sixth * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-	return true;
-}
-MARCH(rk4)
-
-/* Velocity Verlet: the accelerations are those at t. Forces that depend on velocity see v + h a, which is of second
- * order */
-INLINE bool verlet(struct fixed *f, struct part *p, double t, double *state)
-{
-	const int n = f->n;
-	const double h = p->h;
-	double *restrict x = f->work[0], *restrict dxdt = f->work[1];
-	double *q = state, *v = state + n, *a = state + 2 * n;
-	for (int i = 0; i < n; i++) {
-		x[i] = q[i] + h * (v[i] + 0.5 * h * a[i]);
-		x[n + i] = v[i] + h * a[i];
-	}
-	slope(f, t + h, x, dxdt);
-	for (int i = 0; i < n; i++) {
-		q[i] = x[i];
-		v[i] += 0.5 * h * (a[i] + dxdt[n + i]);
-		a[i] = dxdt[n + i];
-	}
-	return true;
-}
-MARCH(verlet)
+#define EXPLICIT(NAME) \
+	INLINE bool NAME(struct fixed *f, struct part *p, double t, double *state) \
+	{ \
+		NAME##_step(2 * f->n, f, t, p->h, state); \
+		return true; \
+	} \
+	MARCH(NAME)
+EXPLICIT(heun)
+EXPLICIT(rk4)
+EXPLICIT(verlet)
 
 /* Dormand and Prince, of order 5: the slope at the end is the first of the next step */
 INLINE bool dormand_prince(struct fixed *f, struct part *p, double t, double *state)
@@ -491,7 +448,7 @@ MARCH(explicit_step)
 	.keeps_acceleration = true, .c = {__VA_ARGS__}
 #define COMPOSITE .linear = WAY(composite), .prepare = composite_prepare
 #define ALPHA .linear = WAY(newmark_linear), .prepare = newmark_prepare
-#define EXPLICIT .linear = WAY(explicit_step), .prepare = explicit_prepare
+#define BY_PRODUCTS .linear = WAY(explicit_step), .prepare = explicit_prepare
 /* Of the spectral radius for large steps */
 #define ALPHA_OF(M, F) {M, F, 0.25 * (1.0 - (M) + (F)) * (1.0 - (M) + (F)), 0.5 - (M) + (F)}
 #define OF_RHO(RHO) ALPHA_OF((2.0 * RHO - 1.0) / (RHO + 1.0), RHO / (RHO + 1.0))
@@ -543,10 +500,10 @@ static const struct scheme structural[] = {
 	[RHO_BATHE_0] = {STRUCTURAL("rho-Bathe 0", TWO_SOLUTIONS NOH "0"), COMPOSITE, .rho = 0.0},
 	[RHO_BATHE_5] = {STRUCTURAL("rho-Bathe 0.5", TWO_SOLUTIONS NOH "0.5"), COMPOSITE, .rho = 0.5},
 	[RHO_BATHE_1] = {STRUCTURAL("rho-Bathe 1", TWO_SOLUTIONS NOH "1"), COMPOSITE, .rho = 1.0},
-	[CR] = {STRUCTURAL("CR", NO_SOLUTION "Chen and Ricles 2008"), EXPLICIT, .c = ALPHA_OF(0.0, 0.0)},
-	[KR_0] = {STRUCTURAL("KR-alpha 0", NO_SOLUTION KOLAY "0"), EXPLICIT, .c = OF_RHO(0.0)},
-	[KR_5] = {STRUCTURAL("KR-alpha 0.5", NO_SOLUTION KOLAY "0.5"), EXPLICIT, .c = OF_RHO(0.5)},
-	[KR_1] = {STRUCTURAL("KR-alpha 1", NO_SOLUTION KOLAY "1"), EXPLICIT, .c = OF_RHO(1.0)},
+	[CR] = {STRUCTURAL("CR", NO_SOLUTION "Chen and Ricles 2008"), BY_PRODUCTS, .c = ALPHA_OF(0.0, 0.0)},
+	[KR_0] = {STRUCTURAL("KR-alpha 0", NO_SOLUTION KOLAY "0"), BY_PRODUCTS, .c = OF_RHO(0.0)},
+	[KR_5] = {STRUCTURAL("KR-alpha 0.5", NO_SOLUTION KOLAY "0.5"), BY_PRODUCTS, .c = OF_RHO(0.5)},
+	[KR_1] = {STRUCTURAL("KR-alpha 1", NO_SOLUTION KOLAY "1"), BY_PRODUCTS, .c = OF_RHO(1.0)},
 };
 
 const struct method *const fixed_methods[] = {

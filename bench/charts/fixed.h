@@ -9,7 +9,7 @@
 #include "charts.h"
 #include "factors.h"
 
-enum { WORK = 8 }; /* vectors of 2n to work in */
+enum { WORK = 8, MOST_ENTRIES = 256 }; /* vectors of 2n to work in; 2n at most */
 
 /* q+ = q + h v + h^2 ((1/2 - beta) a + beta a+)        v+ = v + h ((1 - gamma) a + gamma a+)
  * (1 - alpha_m) a+ + alpha_m a = acceleration at t + (1 - alpha_f) h, (1 - alpha_f) q+ + alpha_f q,

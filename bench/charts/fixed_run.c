@@ -110,7 +110,7 @@ struct run *fixed_open(const struct method *method, const struct problem *proble
 	const int steps = steps_of(problem, setting);
 	const bool linear = scheme->wants_linear && scheme->wants_linear(problem);
 	const struct way *way = linear ? &scheme->linear : &scheme->plain;
-	struct fixed *f = steps > 0 && way->step ? calloc(1, sizeof *f) : NULL;
+	struct fixed *f = steps > 0 && way->step && 2 * problem->n <= MOST_ENTRIES ? calloc(1, sizeof *f) : NULL;
 	if (!f)
 		return NULL;
 	f->run = (struct run){.method = method, .problem = problem, .restart = fixed_restart, .advance = way->advance,

@@ -68,85 +68,37 @@ struct inlined {
 	int inside;
 };
 
-/* ---- steps for one right-hand side, which an instance below compiles into them ----
- *
- * state: n coordinates, velocities, and the accelerations that some methods keep from one step to the next. n is a
- * constant wherever these functions are inlined, and loops over a state's entries are then unrolled. */
+/* ---- steps for one right-hand side, which an instance below compiles into them ---- */
 
 enum { MOST_SIZE = 2 * MOST_COORDINATES };
 typedef void slopes_function(double t, const double *y, double *f);
-typedef void step_function(const int n, slopes_function *slopes, double t, double h, double *state);
-#define EACH(count) _Pragma("GCC unroll 4") for (int m = 0; m < (count); m++)
+typedef void step_function(const int size, slopes_function *slopes, double t, double h, double *state);
 
-/* k1: the slope at the start */
-INLINE void rk4_from(const int n, slopes_function *slopes, double t, double h, double *state, const double *k1)
-{
-	const double half = 0.5 * h, sixth = h / 6.0;
-	double k2[MOST_SIZE], k3[MOST_SIZE], k4[MOST_SIZE], x[MOST_SIZE];
-	EACH(2 * n)
-		x[m] = state[m] + half * k1[m];
-	slopes(t + half, x, k2);
-	EACH(2 * n)
-		x[m] = state[m] + half * k2[m];
-	slopes(t + half, x, k3);
-	EACH(2 * n)
-		x[m] = state[m] + h * k3[m];
-	slopes(t + h, x, k4);
-	EACH(2 * n)
-		state[m] += sixth * (k1[m] + 2.0 * (k2[m] + k3[m]) + k4[m]);
-}
-
-INLINE void rk4_step(const int n, slopes_function *slopes, double t, double h, double *state)
-{
-	double k1[MOST_SIZE];
-	slopes(t, state, k1);
-	rk4_from(n, slopes, t, h, state, k1);
-}
+#define EXPLICIT_UNROLLED
+#define EXPLICIT_TYPE slopes_function
+#define EXPLICIT_MOST MOST_SIZE
+#define EXPLICIT_SLOPES(slopes, t, y, f) slopes(t, y, f)
+#include "explicit_step.h"
 
 /* Over several units, with the slope that the next one begins with */
-INLINE void rk4_long(const int n, slopes_function *slopes, double t, double h, double *state)
+INLINE void rk4_long(const int size, slopes_function *slopes, double t, double h, double *state)
 {
+	const int n = size / 2;
 	double k1[MOST_SIZE];
-	EACH(2 * n)
+	EACH(size)
 		k1[m] = state[n + m];
-	rk4_from(n, slopes, t, h, state, k1);
+	rk4_from(size, slopes, t, h, state, k1);
 	slopes(t + h, state, k1);
 	EACH(n)
-		state[2 * n + m] = k1[n + m];
-}
-
-INLINE void heun_step(const int n, slopes_function *slopes, double t, double h, double *state)
-{
-	double k1[MOST_SIZE], k2[MOST_SIZE], x[MOST_SIZE];
-	slopes(t, state, k1);
-	EACH(2 * n)
-		x[m] = state[m] + h * k1[m];
-	slopes(t + h, x, k2);
-	EACH(2 * n)
-		state[m] += 0.5 * h * (k1[m] + k2[m]);
-}
-
-/* Velocity Verlet; forces of velocity see v + h a, as in fixed.c */
-INLINE void verlet_step(const int n, slopes_function *slopes, double t, double h, double *state)
-{
-	double *q = state, *v = state + n, *a = state + 2 * n, x[MOST_SIZE], f[MOST_SIZE];
-	EACH(n) {
-		x[m] = q[m] + h * (v[m] + 0.5 * h * a[m]);
-		x[n + m] = v[m] + h * a[m];
-	}
-	slopes(t + h, x, f);
-	EACH(n) {
-		q[m] = x[m];
-		v[m] += 0.5 * h * (a[m] + f[n + m]);
-		a[m] = f[n + m];
-	}
+		state[size + m] = k1[n + m];
 }
 
 /* Kicks b h and drifts a h in turns, symmetric: a kick first and last, so that its force is kept */
-INLINE void turns(const int n, slopes_function *slopes, double t, double h, double *state, const int drifts,
+INLINE void turns(const int size, slopes_function *slopes, double t, double h, double *state, const int drifts,
                   const double *drift, const double *kick)
 {
-	double *q = state, *v = state + n, *a = state + 2 * n, f[MOST_SIZE];
+	const int n = size / 2;
+	double *q = state, *v = state + n, *a = state + size, f[MOST_SIZE];
 	_Pragma("GCC unroll 20") for (int i = 0; i < drifts; i++) {
 		const double kick_now = kick[i <= drifts / 2 ? i : drifts - i];
 		const double drift_now = drift[i <= drifts / 2 ? i : drifts - 1 - i];
@@ -162,14 +114,14 @@ INLINE void turns(const int n, slopes_function *slopes, double t, double h, doub
 		v[m] += kick[0] * h * a[m];
 }
 
-INLINE void blanes_moan_step(const int n, slopes_function *slopes, double t, double h, double *state)
+INLINE void blanes_moan_step(const int size, slopes_function *slopes, double t, double h, double *state)
 {
-	turns(n, slopes, t, h, state, BLANES_MOAN, blanes_moan_drift, blanes_moan_kick);
+	turns(size, slopes, t, h, state, BLANES_MOAN, blanes_moan_drift, blanes_moan_kick);
 }
 
-INLINE void kahan_li_step(const int n, slopes_function *slopes, double t, double h, double *state)
+INLINE void kahan_li_step(const int size, slopes_function *slopes, double t, double h, double *state)
 {
-	turns(n, slopes, t, h, state, KAHAN_LI, kahan_li_drift, kahan_li_kick);
+	turns(size, slopes, t, h, state, KAHAN_LI, kahan_li_drift, kahan_li_kick);
 }
 
 /* The coordinates' polynomial of degree 5 through both ends of a step, their velocities and accelerations, in the part
@@ -206,7 +158,7 @@ INLINE void march(const int n, slopes_function *slopes, step_function *step, dou
 	for (int u = 0; u < units; u++) {
 		const double t = t0 + u * unit;
 		for (int k = 0; k < steps; k++)
-			step(n, slopes, t + k * h, h, s);
+			step(2 * n, slopes, t + k * h, h, s);
 		for (int m = 0; m < 2 * n && rows; m++)
 			rows[(ptrdiff_t)u * 2 * n + m] = s[m];
 	}
@@ -223,7 +175,7 @@ INLINE void stride(const int n, slopes_function *slopes, step_function *step, st
 	for (int u = 0; u < units || (units == 0 && u == 0); u++) {
 		if (r->inside == 0) {
 			memcpy(r->from, r->state, sizeof r->from);
-			step(n, slopes, (double)r->units * r->run.problem->unit, r->h, r->state);
+			step(2 * n, slopes, (double)r->units * r->run.problem->unit, r->h, r->state);
 			join(n, r->h, r->from, r->state, r->bend);
 		}
 		if (units > 0) {

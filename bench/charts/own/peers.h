@@ -10,30 +10,22 @@
 
 /* ---- RK4 ---- */
 
+#define EXPLICIT_TYPE void
+#define EXPLICIT_MOST N
+#define EXPLICIT_SLOPES(of, t, y, f) slope(t, y, f)
+#include "../explicit_step.h"
+
 static bool rk4(double setting, double *rows)
 {
 	const int steps = (int)setting;
-	const double h = history.every / steps, half = 0.5 * h, sixth = h / 6.0;
-	double y[N], x[N], k1[N], k2[N], k3[N], k4[N];
+	const double h = history.every / steps;
+	double y[N];
 	memcpy(y, history.start, sizeof y);
 	for (int k = 0; k < history.units; k++, rows += N) {
 		const double from = k * history.every;
 		history.unit = k;
-		for (int j = 0; j < steps; j++) {
-			const double t = from + j * h;
-			slope(t, y, k1);
-			for (int i = 0; i < N; i++)
-				x[i] = y[i] + half * k1[i];
-			slope(t + half, x, k2);
-			for (int i = 0; i < N; i++)
-				x[i] = y[i] + half * k2[i];
-			slope(t + half, x, k3);
-			for (int i = 0; i < N; i++)
-				x[i] = y[i] + h * k3[i];
-			slope(t + h, x, k4);
-			for (int i = 0; i < N; i++)
-				y[i] += sixth * (k1[i] + 2.0 * (k2[i] + k3[i]) + k4[i]);
-		}
+		for (int j = 0; j < steps; j++)
+			rk4_step(N, NULL, from + j * h, h, y);
 		if (!own_finite(y))
 			return false;
 		memcpy(rows, y, sizeof y);
