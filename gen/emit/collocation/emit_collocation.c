@@ -74,18 +74,14 @@ void emit_collocation_place(const struct emitter *e)
 
 /* ---- what the collocation is given ---- */
 
-/* 1/s: of the loads that what chooses formulas reads */
+/* 1/s: of the loads that what chooses formulas reads, or what lets a contact go: at rest no error speaks of them */
 static double frequency_of_choices(const struct emitter *e)
 {
-	const struct expansion *d = e->step->taylor.switching;
+	const struct reads reads = reads_of_choices(e);
 	double highest = 0;
-	for (int i = 0; d && i < d->functions; i++) {
-		const struct form *form = d->function[i].form;
-		const struct reads reads = reads_of(e->model, 1, &form);
-		for (int l = 0; l < e->system->loads; l++)
-			if (reads.load[l] && oscillates(e->system->load[l].forcing))
-				highest = fmax(highest, mpq_get_d(e->system->load[l].forcing->w));
-	}
+	for (int l = 0; l < e->system->loads; l++)
+		if (reads.load[l] && oscillates(e->system->load[l].forcing))
+			highest = fmax(highest, mpq_get_d(e->system->load[l].forcing->w));
 	return highest;
 }
 

@@ -359,13 +359,21 @@ static bool any_known(const struct emitter *e, const struct reads *read)
 	       any_of(read->param, held_values(e->model));
 }
 
+struct reads reads_of_choices(const struct emitter *e)
+{
+	int count;
+	const struct form **form = forms_of(e, THE_SWITCHING, &count);
+	struct reads read = reads_of(e->model, count, form);
+	if (meets_contacts(e))
+		note_reads(&read, e, tape_of_part(e, THE_SWITCHING));
+	return read;
+}
+
 static bool reads_known(const struct emitter *e, enum motion_part part)
 {
 	int count;
 	const struct form **form = forms_of(e, part, &count);
-	struct reads read = reads_of(e->model, count, form);
-	if (meets_contacts(e) && part == THE_SWITCHING)
-		note_reads(&read, e, tape_of_part(e, part));
+	struct reads read = part == THE_SWITCHING ? reads_of_choices(e) : reads_of(e->model, count, form);
 	bool any = any_known(e, &read), *seen = ARRAY(bool, (size_t)atoms_count(e->model->equations.atoms));
 	for (int i = 0; i < count; i++)
 		any = form_decides(form[i], seen) || any;

@@ -98,6 +98,7 @@ bool splits(const struct emitter *e);
 bool motion_reads_load(const struct emitter *e, int load);
 void emit_motion(const struct emitter *e);      /* NAME_known, NAME_linearize, NAME_forces, NAME_watch, NAME_trace */
 int  known_values(const struct emitter *e);                       /* what is known of a time; 0: nothing is read */
+struct reads reads_of_choices(const struct emitter *e);          /* what chooses formulas, what is watched */
 bool watch_reads_known(const struct emitter *e);                 /* more than the state; */
 bool trace_reads_known(const struct emitter *e);
 const char *kind_text(const struct emitter *e, const char *i);   /* C: 0 .. 2, which are measured together */
