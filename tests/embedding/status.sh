@@ -124,10 +124,10 @@ looks 'direct' grows.spec -DGROWS --form direct
 looks 'delta, compensated' grows.spec '-DGROWS -DCOMPENSATED' --form delta --accuracy compensated
 looks 'kick, drift, kick' "$root/models/scs.spec" ''
 looks 'kick, drift, kick, compensated' "$root/models/scs.spec" -DCOMPENSATED --accuracy compensated
-looks 'masses in the state' "$root/tests/forms/equal_held.spec" ''
-looks 'momentum kept' "$root/tests/forms/loose.spec" ''
-looks 'momentum kept, compensated' "$root/tests/forms/loose.spec" -DCOMPENSATED --accuracy compensated
-looks 'more than 16 states' "$root/tests/forms/large.spec" ''
+looks 'masses in the state' "$(path_of tests/forms/equal_held.spec)" ''
+looks 'momentum kept' "$(path_of tests/forms/loose.spec)" ''
+looks 'momentum kept, compensated' "$(path_of tests/forms/loose.spec)" -DCOMPENSATED --accuracy compensated
+looks 'more than 16 states' "$(path_of tests/forms/large.spec)" ''
 looks 'tunable' "$(path_of tests/tunable/held.spec)" ''
 looks 'ramps, changing loads' "$(path_of tests/emitted/linear/switched.spec)" ''
 

@@ -64,7 +64,7 @@ while read -r name rows spec options; do
     case $spec in
         models/*) file=$root/$spec ;;
         linear/*) file=$(path_of "tests/emitted/$spec") ;;
-        forms/*) file=$root/tests/$spec ;;
+        forms/*) file=$(path_of "tests/$spec") ;;
         *) file=$spec ;;
     esac
     # shellcheck disable=SC2086

@@ -7,13 +7,15 @@ set -eu
 plgen=$1
 list=$2
 shift 2
+work=$(mktemp -d "${TMPDIR:-/tmp}/map.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+trap 'exit 99' HUP INT TERM
+. "${0%/*}/../made.sh"
+specs_of "$@"
 grep -v -e '^#' -e '^$' "$list" | while read -r name _ step as options; do
     as=${as#as=}
-    for folder; do
-        [ ! -e "$folder/$name.spec" ] || break
-    done
     # shellcheck disable=SC2086
-    "$plgen" --prefix "$as" --step "$step" $options "$folder/$name.spec" |
+    "$plgen" --prefix "$as" --step "$step" $options "$work/$name.spec" |
         sed -n -e "/^struct $as {/,/^};/p" -e "/^enum {.*;/p" -e "/^enum {[^;]*\$/,/;/p" \
             -e "/^void ${as}_step($as \*s)\$/,/^}/p" |
         sed -e '/_flush(s); }$/d' -e 's/\<float\>/wide/g' -e 's/\<double\>/wide/g' \
@@ -25,11 +27,8 @@ done
 echo 'static const struct map maps[] = {'
 grep -v -e '^#' -e '^$' "$list" | while read -r name _ step as options; do
     as=${as#as=}
-    for folder; do
-        [ ! -e "$folder/$name.spec" ] || break
-    done
     # shellcheck disable=SC2086
-    drift=$("$plgen" --step "$step" $options --explain=json "$folder/$name.spec" |
+    drift=$("$plgen" --step "$step" $options --explain=json "$work/$name.spec" |
         sed -n 's/.*"drift_per_step": {"amplitude": \(.*\), "phase": \(.*\)}.*/\1, \2/p')
     echo "    {\"$as\", ${as}_map, ${drift:-NAN, NAN}},"
 done

@@ -15,6 +15,7 @@ here=$(cd "${0%/*}" && pwd) || exit 99
 . "$here/../run_cc.sh"
 . "$here/../tap.sh"
 . "$here/../cases.sh"
+. "$here/../cases.sh"
 runtime_archive "$root/runtime"
 
 # subjects, then subject FILE ... and values: what the self-test of each file returns, a line each, from one program
@@ -49,7 +50,7 @@ for spec in models/scs models/sdcsf tests/forms/damped_ramped; do
 	for options in "" "--real float" "--form direct"; do
 		name="$(basename "$spec") ${options:-default}"
 		# shellcheck disable=SC2086
-		"$plgen" --prefix subject --selftest $options "$root/$spec.spec" >good.c 2>log ||
+		"$plgen" --prefix subject --selftest $options "$(path_of "$spec.spec")" >good.c 2>log ||
 			{ result 1 "$name: plgen"; continue; }
 		subjects
 		subject good.c
@@ -182,7 +183,7 @@ result $? 'balls without losses, of ten masses and restitutions: below 200 units
 
 # What NAME_init leaves, where the copy of its table goes wrong (gcc 12 makes {1, 1, 1, 1} of {1, 1, 0, 0}); and that it
 # is right where that compiler has wide constants
-"$plgen" --prefix subject --selftest "$here/begun.spec" >good.c 2>log
+"$plgen" --prefix subject --selftest "$(path_of tests/forms/begun.spec)" >good.c 2>log
 awk '/ subject_initial\[/ { sub("1.0, 0.0, 0.0", "1.0, 1.0, 1.0") } { print }' good.c >bad.c
 cmp -s good.c bad.c && echo 'no table in NAME_init' >>log
 subjects

@@ -8,6 +8,7 @@ plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 only=${3:-}
 . "$root/tests/tap.sh"
+. "$root/tests/cases.sh"
 
 cases=$root/tests/program/cases.list
 sed -n 's/^=== //p' "$cases" >names
@@ -16,8 +17,9 @@ while read -r name options; do
 		continue
 	fi
 	awk -v name="$name" '/^=== / { on = $2 == name; next } on' "$cases" >expected
+	spec=${options##* }
 	# shellcheck disable=SC2086
-	(cd "$root" && "$plgen" --explain=program $options) >found 2>complaint </dev/null
+	"$plgen" --explain=program ${options%"$spec"} "$(path_of "$spec")" >found 2>complaint </dev/null
 	status=$?
 	diff -U 1 expected found >log || status=1
 	result $status "$name"
