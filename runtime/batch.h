@@ -17,7 +17,7 @@
  *     PL(share_out)(s, now)                   what outputs read of it
  *     PL(lanes_step)(y, factor, now)          one step of as many instances as there are lanes
  *     PL(lanes_out)(y, factor, now, out)      and their outputs
- *     PL_FLUSHES, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED     of flush.h, where a step flushes
+ *     PL_FLUSHES, PL_FLUSHES_BESIDE, PL_DECAYING, PL(flush_part)[], PL_COMPENSATED     of flush.h, where a step flushes
  *
  *     PL_EVENTS                      1: PL(lanes_step) leaves lanes that may have an event in the step as they are, and
  *                                    says which it has stepped; behind the states y has the region
@@ -234,10 +234,33 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
+#if PL_FLUSHES > 0 && PL_FLUSHES_BESIDE
+/* Beside others of their part states are compared in each instance by itself. */
+static PL_APART void PL(lanes_flush_beside)(pl_lanes *y)
+{
+    size_t l;
+    int i;
+    for (l = 0; l < PL_AT_ONCE; l++) {
+        PL_TYPE one;
+        for (i = 0; i < PL_STATES; i++) {
+            one.y[i] = PL(lane)(&y[i], l);
+        }
+        PL(flush)(&one);
+        for (i = 0; i < PL_STATES; i++) {
+            PL(set_lane)(&y[i], l, one.y[i]);
+        }
+    }
+}
+#endif
+
 /* Behind step k of these, as flush.h: all but nothing is 0, in every lane */
 PL_LANES_INLINE void PL(lanes_flush)(const PL(steps_ahead) *ahead, size_t k, pl_lanes *y)
 {
-#if PL_FLUSHES > 0
+#if PL_FLUSHES > 0 && PL_FLUSHES_BESIDE
+    if (k == ahead->steps && ahead->flushes) {
+        PL(lanes_flush_beside)(y);
+    }
+#elif PL_FLUSHES > 0
 #if PL_SINGLE
     const pl_lanes least = pl_lanes_all((real)0x1p-116);
 #else

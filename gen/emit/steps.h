@@ -38,6 +38,12 @@ void emit_at_start(const struct emitter *e);
 int most_samples_before(const struct emitter *e);                  /* samples kept of an input; 0: the last alone */
 bool *loads_of_step(const struct emitter *e);                    /* per load: its states are read */
 void emit_step(const struct emitter *e);
+/* Of a step that loops over blocks or modes: what acts, columns of loads, then inputs; states in rows, NULL: all */
+const char **acting_texts(const struct emitter *e);
+bool *states_in_rows(const struct emitter *e);
+void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
+void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
+void emit_loops_of_step(const struct emitter *e, const char *const *acting_text);
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */

@@ -195,10 +195,20 @@ static void say_array(const struct emitter *e, int dimensions, const int *size, 
 	    row && dimensions == 1 ? format("  /* %s */", *row) : "");
 }
 
+const char *state_vector(const struct emitter *e)
+{
+	return e->wide ? "y" : "s->y";
+}
+
+const char *table_words(const struct emitter *e)
+{
+	return e->device ? e->device : "static const";
+}
+
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
 		const double *value, const char *const *row)
 {
-	say(e, "%sstatic const double $n_%s", note ? format("\n/* %s */\n", note) : "", name);
+	say(e, "%s%s double $n_%s", note ? format("\n/* %s */\n", note) : "", table_words(e), name);
 	for (int k = 0; k < dimensions; k++)
 		say(e, "[%d]", size[k]);
 	say(e, " = ");
@@ -277,7 +287,7 @@ void say_macro(const struct emitter *e, const char *name, const char *text)
 
 void emit_integers(const struct emitter *e, const char *type, const char *name, int count, const int *value)
 {
-	say(e, "static const %s $n_%s[%d] = {%s", type, name, count ? count : 1, count ? "" : "0");
+	say(e, "%s %s $n_%s[%d] = {%s", table_words(e), type, name, count ? count : 1, count ? "" : "0");
 	for (int i = 0; i < count; i++)
 		say(e, "%s%d", !i ? "" : i % 20 ? ", " : ",\n    ", value[i]);
 	say(e, "};\n");

@@ -48,6 +48,9 @@ struct emitter {
 	const struct standing *at;  /* where numbers of derivatives stand; NULL: as they do in s */
 	bool drawn;                 /* of the outputs those alone that a page draws, which else are left out */
 	bool at_state;              /* of a series: what is known beside the state stands in locals */
+	bool wide;                  /* over lanes: a state is pl_lanes y[i], of as many instances; */
+	const int *own;             /* where in factor[] the table of each group begins */
+	const char *device;         /* what tables of a kernel begin with, __constant; NULL: those of C */
 	const struct emitter *members; /* prints what declares tables of an instance, to it; NULL: not so */
 };
 /* The only writer: a printf format in which $n is the model's name and $N the same in capitals, $o and $p a part's own
@@ -102,6 +105,8 @@ void emit_inner_matrix(const struct emitter *e, int rows, int columns, const dou
 		       const char *const *row_note);
 /* static const double NAME_name[size[0]]...[size[dimensions - 1]], behind a blank line and the note, NULL: none; `row`:
  * of those of the last dimension, NULL: nothing is said of them */
+const char *state_vector(const struct emitter *e);                /* s->y, or over lanes y */
+const char *table_words(const struct emitter *e);                 /* static const */
 void emit_array(const struct emitter *e, const char *note, const char *name, int dimensions, const int *size,
 		const double *value, const char *const *row);
 void emit_name_list(const struct emitter *e, const char *array, int count, const char *const *name);

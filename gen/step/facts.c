@@ -35,12 +35,20 @@ static bool adapts(const struct step *step)
 		mpq_sgn(model->truncation.tolerance) != 0);
 }
 
+static bool sums_columns(const struct step *step)
+{
+	bool any = false;
+	for (int k = 0; step->program && k < step->program->groups; k++)
+		any = any || step->program->group[k].kind == GROUP_COLUMNS;
+	return any;
+}
+
 struct facts facts_of_step(const struct step *step)
 {
 	struct facts facts = facts_of_model(step->model);
 	facts.far = lacks_values(step);
 	facts.sought = peaks_by_values(step);
-	facts.loops = step->program && step->program->loops;
+	facts.columns = sums_columns(step);
 	facts.modal = step->modal != NULL;
 	facts.adapts = adapts(step);
 	facts.staged = step->taylor.expansion && step->taylor.expansion->lines;

@@ -404,6 +404,27 @@ static char *key_of(const struct sweep *s, const struct code *c)
 	return hash_name(&h);
 }
 
+/* A run ends at its last step, before T where that is no multiple of it: a line has no times that would show it. */
+static void note_ends(const struct sweep *s)
+{
+	size_t early = 0, first = 0;
+	double end = 0;
+	for (size_t row = 0; row < s->rows; row++) {
+		struct job job = { .machine = s->machine, .until = s->options->until, .h = s->machine->h };
+		for (size_t i = 0; i < s->params; i++)
+			if (s->param[i].step)
+				read_number(sweep_value(s, row, i), &job.h);
+		if (job.until < 0 || plan_run(&job) || job.until - (double)job.steps * job.h < 1e-6 * job.h)
+			continue;
+		if (early++ == 0)
+			first = row, end = time_number(job.steps, job.h, s->machine->single);
+	}
+	if (early)
+		say_note(format("T = %s is no multiple of the step of %zu of %zu runs, which end before it: run %zu at "
+				"t = %s", shortest(s->options->until, false), early, s->rows, first + 1,
+				shortest(end, s->machine->single)));
+}
+
 static void begin_output(struct sweep *s, const struct code *c, struct workers w)
 {
 	if (s->record && !record_on_grid(s->record, s->machine->h))
@@ -413,6 +434,7 @@ static void begin_output(struct sweep *s, const struct code *c, struct workers w
 		s->to_draw = need(open_memstream(&s->drawn, &s->drawn_length));
 	if (w.rank != 0)
 		return;
+	note_ends(s);
 	s->journal = journal_open(key_of(s, c), s->options->resume, s->rows, s->line);
 	say_when_interrupted("\nplrun: interrupted; the same command with --resume goes on here\n");
 	for (size_t i = 0; i < s->rows; i++)

@@ -65,6 +65,21 @@ printf '%s\n' 'model swings' 'param w = 1, f = 0.4' 'tunable w, f' 'input p hold
 sed -e '/^input/d' -e 's/ + p + .*/ + log(2 + x)/' -e 's/taylor 5/taylor 6 over 3/' "$work/swings.spec" \
     >"$work/several.spec"
 
+# More than 16 states: oscillators alike, of params of each instance, and one that is not; modes of a chain
+awk 'BEGIN {
+    print "model blocks\nparam z = 0.1, f = 1\ntunable z, f\ninput p hold first, q"
+    for (i = 1; i < 10; i++)
+        printf "coord x%d\n x%d\047\047 + z*x%d\047 + %d*x%d = f*p + q\n", i, i, i, i, i
+    print "coord v\nv\047\047 + 3*v = z*p\noutput x1, x9\047, v, s = 2*x3 + z*x4\047 + f*q\nstep 0.05"
+}' >"$work/blocks.spec"
+awk 'BEGIN {
+    print "model modes\ninput p hold first, q\ncoord x0, x1, x2, x3, x4, x5, x6, x7, x8, x9, x10"
+    for (i = 1; i < 10; i++)
+        printf "x%d\047\047 + 0.02*(2*x%d\047 - x%d\047 - x%d\047) + 40*(2*x%d - x%d - x%d) = %s\n", i, i, i - 1,
+            i + 1, i, i - 1, i + 1, i % 3 ? "q" : "p + cos(3*t)"
+    print "x0\047 = -x0\nx10\047 = -2*x10\ninit x4 = 1\noutput x1, x9\nstep 0.05"
+}' >"$work/modes.spec"
+
 while read -r spec options; do
     [ -n "$spec" ] || continue
     case $spec in
@@ -110,7 +125,7 @@ tests/peaks/peaks.spec
 tests/holds/tuned.spec}
 END
 
-for spec in stops.spec rubs.spec swings.spec several.spec; do
+for spec in stops.spec rubs.spec swings.spec several.spec blocks.spec modes.spec; do
     specs=$work agrees 0 "$run_cc" '' "$spec"
     [ $spec = swings.spec ] || specs=$work agrees 0 "${CC:-cc} -std=c99" '-O1 -ffp-contract=off' "$spec"
     specs=$work agrees 0 "${CC:-cc} -std=c99" '-O1 -march=native -ffp-contract=off' "$spec"
@@ -372,8 +387,8 @@ kernel() {
     chosen "kernel of $spec $*" || return 0
     what="-DHAS_INPUTS=1"
     {
-        "$plgen" --batch --prefix m "$@" -o m.c "$(path_of "$spec")" &&
-            "$plgen" --target openmp --prefix m "$@" "$(path_of "$spec")" >m_kernel.c &&
+        "$plgen" --batch --prefix m "$@" -o m.c "$(root=$specs path_of "$spec")" &&
+            "$plgen" --target openmp --prefix m "$@" "$(root=$specs path_of "$spec")" >m_kernel.c &&
             { ! grep -q 'M_INPUTS = 0' m.h || what=-DHAS_INPUTS=0; } &&
             { ! grep -q M_BATCH_FACTORS m.h || what="$what -DM_BATCH_FACTORED"; } &&
             { ! grep -q '^#define PL_FLOAT_ONLY' m.h || what="$what -DREAL_FLOAT"; } &&
@@ -387,6 +402,8 @@ kernel() {
 kernel models/oscillator.spec
 kernel models/sdcsf.spec --form delta --accuracy compensated --real float
 kernel tests/batch/forced.spec
+specs=$work kernel blocks.spec
+specs=$work kernel modes.spec
 # refused SPEC WHY
 refused() {
     "$plgen" --target cuda "$root/$1" >kernel.cu 2>log
@@ -426,7 +443,7 @@ by_itself models/slider_crank.spec 'each looks by itself how far its series hold
 by_itself models/vanderpol_stiff.spec 'the remainder is not linear in the state'
 by_itself tests/tunable/changes.spec 'loads change their formula inside a step'
 by_itself tests/tunable/sweep.spec 'its loads may have a frequency of its own'
-by_itself tests/relative/row.spec 'beyond 16 states a step loops over its tables'
+by_itself tests/relative/row.spec 'a block of more than 16 states is summed over its rows, in vectors of its own'
 by_itself tests/forms/carried.spec 'its states are kept as differences'
 sed 's/0.2\*u)/0.2*held)/' "$root/tests/peaks/peaks.spec" >"$work/jumps.spec"
 specs=$work by_itself jumps.spec 'output pa is the peak of what jumps with the samples'

@@ -131,6 +131,10 @@ result $? '... and compiled once more, not ten times'
 sed 's/^init x = 1/init x = k\/4/' loose.spec >start.spec
 run start.spec 5 --sweep k=1:10:10 --jobs 1 >start.csv && closed start.csv 0
 result $? 'an initial value that reads the param is that of the row'
+run loose.spec 5 --sweep step=0.1:0.3:3 >steps.csv
+grep -q '^note: T = 5 is no multiple of the step of 1 of 3 runs, .* run 3 at t = 4.8$' said &&
+	awk -F, 'NR == 4 { d = $3 - cos(9.6); exit d * d > 1e-24 }' steps.csv
+result $? 'where a run ends whose step T is no multiple of, and its last value there'
 run loose.spec 5 --sweep m=0:9:10 --jobs 1 >mass.csv
 echo 'm
 0' >zero.csv

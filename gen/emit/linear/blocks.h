@@ -23,8 +23,4 @@ int  alike_entry(const struct emitter *e, const struct group *g, bool changing, 
 bool is_blockwise(const struct emitter *e);
 void emit_block_list(const struct emitter *e);
 
-/* ---- emit_modal.c: a step of modes ---- */
-
-void emit_modes(const struct emitter *e);                         /* tables; nothing of other forms */
-
 #endif

@@ -41,6 +41,8 @@ static double group_number(const struct emitter *e, const struct group *g, int r
 /* Where a group's numbers stand: in a table of the code, or in the instance's coefficients */
 static const char *group_table(const struct emitter *e, const struct group *g, const char *what, int index)
 {
+	if (g->tuned && e->wide)
+		return "own";
 	return g->tuned ? format("s->coeffs.%s%d", what, index) : spell(e, "$n_%s%d", what, index);
 }
 
@@ -290,11 +292,36 @@ static const char *alike_row(const struct emitter *e, const struct group *g, int
 	return s.terms ? sum_of(&s, 22) : NULL;
 }
 
+/* Of one instance, or over lanes, where its own numbers are some of the factors */
+static void emit_alike_head(const struct emitter *e, const struct group *g, int index)
+{
+	if (!e->wide) {
+		emit_parameters(e, g, "alike", index);
+		return;
+	}
+	say(e, "\nPL_LANES_INLINE void $n_lanes_alike%d(pl_lanes *y, const pl_lanes *factor, const double *act)\n"
+	       "{\n", index);
+	if (g->tuned)
+		say(e, "    const pl_lanes (*const own)[%d] = (const pl_lanes (*)[%d])(factor + %d);\n", g->blocks,
+		    g->blocks, e->own[index]);
+}
+
+/* What a state becomes; without a term of a state a sum over lanes is one number for all. */
+static const char *alike_value(const struct emitter *e, const struct group *g, int row, int index, int *count)
+{
+	struct alike_term *term = ARRAY(struct alike_term, (size_t)(g->states + acting(g)));
+	const bool added = e->step->program->products_added;
+	const char *sum = alike_row(e, g, row, index, count);
+	const bool alone = alike_terms(e, g, row, false, term) == 0 || term[0].acting >= 0;
+	if (added)
+		return sum ? format("y%d + (%s)", row, sum) : format("y%d", row);
+	return e->wide && alone && !g->tuned ? format("pl_lanes_all(%s)", sum ? sum : "0.0") : sum ? sum : "0.0";
+}
+
 static void emit_alike_function(const struct emitter *e, const struct group *g, int index)
 {
 	int count[2] = { 0, 0 };
-	const bool added = e->step->program->products_added;
-	emit_parameters(e, g, "alike", index);
+	emit_alike_head(e, g, index);
 	if (changes(e, g))
 		say(e, "    %sdouble (*const changing)[%d] = %s[s->segment];\n", own_or_const(g), g->blocks,
 		    group_table(e, g, "loads", index));
@@ -304,17 +331,13 @@ static void emit_alike_function(const struct emitter *e, const struct group *g, 
 	       "    for (i = 0; i < %d; i++) {\n",
 	    g->blocks);
 	for (int row = 0; row < g->states; row++)
-		say(e, "        const double y%d = s->y[%s];\n", row, place_of_block(e, g, row, index));
-	for (int row = 0; row < g->states; row++) {
-		const char *sum = alike_row(e, g, row, index, count);
-		say(e, "        s->y[%s] = ", place_of_block(e, g, row, index));
-		if (added && sum)
-			say(e, "y%d + (%s);\n", row, sum);
-		else
-			say(e, "%s;\n", sum ? sum : added ? format("y%d", row) : "0.0");
-	}
-	say(e, "    }\n"
-	       "}\n");
+		say(e, "        const %s y%d = %s[%s];\n", e->wide ? "pl_lanes" : "double", row, state_vector(e),
+		    place_of_block(e, g, row, index));
+	for (int row = 0; row < g->states; row++)
+		say(e, "        %s[%s] = %s;\n", state_vector(e), place_of_block(e, g, row, index),
+		    alike_value(e, g, row, index, count));
+	say(e, "    }\n");
+	close_function(e, e->wide ? "factor act" : "");
 }
 
 /* ---- the numbers of a group ---- */
@@ -392,8 +415,8 @@ static void emit_tables_of_group(const struct emitter *e, const struct group *g,
 	if (shape.rows) {
 		say(e, "\n"
 		       "/* %s */\n"
-		       "static const double $n_%s%d[%d][%d] = {\n",
-		    group_note(e, g), shape.name, index, shape.rows, shape.columns);
+		       "%s double $n_%s%d[%d][%d] = {\n",
+		    group_note(e, g), table_words(e), shape.name, index, shape.rows, shape.columns);
 		emit_group_numbers(e, g, false);
 		say(e, "};\n");
 	}
@@ -422,11 +445,12 @@ static bool needs_places(const struct group *g)
 
 static void emit_group(const struct emitter *e, const struct group *g, int index)
 {
+	const bool tables = !e->wide || e->device;
 	if (g->kind == GROUP_ROWS)
 		return;
-	if (needs_places(g))
+	if (needs_places(g) && tables)
 		emit_places(e, g, index);
-	if (!g->tuned)
+	if (!g->tuned && tables)
 		emit_tables_of_group(e, g, index);
 	if (g->kind == GROUP_COLUMNS)
 		emit_columns_function(e, g, index);
@@ -460,7 +484,10 @@ void emit_group_steps(const struct emitter *e, const char *const *acting_text)
 		if (program->group[k].kind != GROUP_ROWS && acting(&program->group[k]))
 			emit_driven(e, &program->group[k], k, acting_text);
 	for (int k = 0; k < program->groups; k++)
-		if (program->group[k].kind != GROUP_ROWS)
+		if (program->group[k].kind != GROUP_ROWS && e->wide)
+			say(e, "    $n_lanes_alike%d(y, factor, %s);\n", k,
+			    acting(&program->group[k]) ? format("driven%d", k) : "now");
+		else if (program->group[k].kind != GROUP_ROWS)
 			say(e, "    $n_%s%d_step(s%s);\n", kind[program->group[k].kind], k,
 			    acting(&program->group[k]) ? format(", driven%d", k) : "");
 }

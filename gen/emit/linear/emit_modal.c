@@ -4,6 +4,8 @@
 #include "step/linear/forms.h"
 #include "step/tapes.h"
 
+#include <string.h>
+
 static const char **mode_names(const struct emitter *e)
 {
 	const struct modal *modal = e->step->modal;
@@ -88,8 +90,13 @@ static void emit_dot(const struct emitter *e)
 {
 	enum { SUMS = 8 };
 	const int states = e->system->states, full = states / SUMS * SUMS;
-	open_function(e, NULL, "static double $n_dot(const double row[$N_STATES], const double x[$N_STATES])");
-	say(e, "    double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0, f = 0.0, g = 0.0, h = 0.0;\n");
+	if (e->wide)
+		open_function(e, NULL, "PL_LANES_INLINE pl_lanes $n_lanes_dot(%sconst double *row, const pl_lanes *x)",
+			      e->device && strncmp(e->device, "__", 2) == 0 ? "__constant " : "");
+	else
+		open_function(e, NULL, "static double $n_dot(const double row[$N_STATES], const double x[$N_STATES])");
+	say(e, e->wide ? "    pl_lanes a = pl_lanes_all(0.0), b = a, c = a, d = a, e = a, f = a, g = a, h = a;\n"
+		       : "    double a = 0.0, b = 0.0, c = 0.0, d = 0.0, e = 0.0, f = 0.0, g = 0.0, h = 0.0;\n");
 	if (full)
 		say(e, "    int i;\n"
 		       "    for (i = 0; i < %d; i += %d) {\n", full, SUMS);
@@ -109,10 +116,16 @@ void emit_modes(const struct emitter *e)
 	const struct modal *modal = e->step->modal;
 	if (!modal)
 		return;
+	if (e->wide && !e->device) {
+		emit_dot(e);
+		return;
+	}
 	emit_array(e, format("e^{p h} of each mode's pole p: real parts, imaginary parts%s",
 			     modal->reals ? ", what is real" : ""), "turn", 1, &modal->states, modal->turn, NULL);
-	emit_mode_rows(e, "Modes from states", "to_modes", modal->states, modal->to, mode_names(e));
-	emit_mode_rows(e, "States from modes", "from_modes", modal->states, modal->from, e->model->names.state);
+	if (!e->device)
+		emit_mode_rows(e, "Modes from states", "to_modes", modal->states, modal->to, mode_names(e));
+	if (!e->device || !modal->output)
+		emit_mode_rows(e, "States from modes", "from_modes", modal->states, modal->from, e->model->names.state);
 	emit_driving(e);
 	struct tape *rows = tape_new();
 	for (int i = 0; i < e->model->outputs; i++)
@@ -136,6 +149,7 @@ void emit_modal_step(const struct emitter *e, const char *const *acting_text)
 	const struct modal *modal = e->step->modal;
 	struct operand *list = operands(e);
 	const int count = driving(e, list), pairs = modal->pairs;
+	const char *y = state_vector(e);
 	for (int k = 0; k < count; k++)
 		say(e, "    const double driven%d = %s;\n", k,
 		    acting_text[list[k].index + (list[k].kind == OPERAND_INPUT ? modal->loads : 0)]);
@@ -143,14 +157,14 @@ void emit_modal_step(const struct emitter *e, const char *const *acting_text)
 	if (pairs) {
 		const char *at = format("%d + i", pairs), *turn = spell(e, "$n_turn");
 		say(e, "    for (i = 0; i < %d; i++) {  /* p + i q, turned and damped */\n"
-		       "        const double p = s->y[i], q = s->y[%s];\n"
-		       "        s->y[i] = %s[i] * p - %s[%s] * q%s;\n"
-		       "        s->y[%s] = %s[%s] * p + %s[i] * q%s;\n"
+		       "        const %s p = %s[i], q = %s[%s];\n"
+		       "        %s[i] = %s[i] * p - %s[%s] * q%s;\n"
+		       "        %s[%s] = %s[%s] * p + %s[i] * q%s;\n"
 		       "    }\n",
-		    pairs, at, turn, turn, at, driven_sum(e, count, "i"), at, turn, at, turn,
-		    driven_sum(e, count, at));
+		    pairs, e->wide ? "pl_lanes" : "double", y, y, at, y, turn, turn, at, driven_sum(e, count, "i"),
+		    y, at, turn, at, turn, driven_sum(e, count, at));
 	}
 	if (modal->reals)
-		say(e, "    for (i = %d; i < %d; i++) { s->y[i] = $n_turn[i] * s->y[i]%s; }\n",
-		    2 * pairs, modal->states, driven_sum(e, count, "i"));
+		say(e, "    for (i = %d; i < %d; i++) { %s[i] = $n_turn[i] * %s[i]%s; }\n",
+		    2 * pairs, modal->states, y, y, driven_sum(e, count, "i"));
 }

@@ -65,24 +65,27 @@ void emit_set_aside(const struct emitter *e)
 	const int *carry = e->step->carried.place;
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
-			say(e, "    const double far%d = s->y[%d];  /* nothing reads %s: over the step it is 0 */\n",
-			    carry[i], i, e->model->names.state[i]);
+			say(e, "    const %s far%d = %s[%d];  /* nothing reads %s: over the step it is 0 */\n",
+			    e->wide ? "pl_lanes" : "double", carry[i], state_vector(e), i, e->model->names.state[i]);
 	for (int i = 0; i < e->system->states; i++)
 		if (carry[i] >= 0)
-			say(e, "    s->y[%d] = 0.0;\n", i);
+			say(e, e->wide ? "    y[%d] = pl_lanes_all(0.0);\n" : "    s->y[%d] = 0.0;\n", i);
 }
 
 void emit_take_back(const struct emitter *e)
 {
 	const int *carry = e->step->carried.place;
 	for (int i = 0; i < e->system->states; i++)
-		if (carry[i] >= 0)
+		if (carry[i] >= 0 && e->wide)
+			say(e, "    y[%d] = pl_lanes_accumulate(far%d, y[%d], pl_lanes_all(0.0), &y[%d]);\n",
+			    i, carry[i], i, e->system->states + carry[i]);
+		else if (carry[i] >= 0)
 			say(e, "    s->y[%d] = pl_accumulate(far%d, s->y[%d], 0.0, &s->carry[%d]);\n",
 			    i, carry[i], i, carry[i]);
 }
 
 /* Of the columns of loads, then of inputs */
-static const char **acting_texts(const struct emitter *e)
+const char **acting_texts(const struct emitter *e)
 {
 	const struct table *table = e->step->branch->full;
 	const char **text = ARRAY(const char *, (size_t)(table->columns + table->inputs) + 1);
@@ -101,7 +104,7 @@ struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped)
 }
 
 /* Of a step that loops over blocks those that have rows of their own; NULL: all */
-static bool *states_in_rows(const struct emitter *e)
+bool *states_in_rows(const struct emitter *e)
 {
 	const struct program *program = e->step->program;
 	bool *stepped = program->loops ? ARRAY(bool, (size_t)e->system->states) : NULL;
@@ -127,15 +130,15 @@ static void emit_rows_of_step(const struct emitter *e)
 	emit_formulas(f, 4);
 }
 
-static void emit_looped_step(const struct emitter *e)
+/* What stands in no rows of its own */
+void emit_loops_of_step(const struct emitter *e, const char *const *acting_text)
 {
 	if (e->step->modal) {
-		emit_modal_step(e, acting_texts(e));
+		emit_modal_step(e, acting_text);
 		return;
 	}
-	emit_rows_of_step(e);
 	emit_set_aside(e);
-	emit_group_steps(e, acting_texts(e));
+	emit_group_steps(e, acting_text);
 	emit_take_back(e);
 }
 
@@ -147,7 +150,9 @@ static void emit_plain_step(const struct emitter *e)
 		return;
 	}
 	emit_load_states(e, loads_of_step(e), false);
-	emit_looped_step(e);
+	if (!e->step->modal)
+		emit_rows_of_step(e);
+	emit_loops_of_step(e, acting_texts(e));
 }
 
 /* Before the steps that call it */

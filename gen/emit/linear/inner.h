@@ -5,7 +5,6 @@
 
 #include "blocks.h"
 
-void emit_groups(const struct emitter *e);                        /* tables and functions of its independent blocks */
 void emit_group_steps(const struct emitter *e, const char *const *acting_text); /* but rows; loads, then inputs */
 
 /* ---- blockwise.c: the independent blocks of a large model, one after the other between steps and many at once ---- */

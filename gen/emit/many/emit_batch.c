@@ -24,6 +24,8 @@ static int members_of(const struct emitter *e, struct member member[6])
 	int states = e->system->states, count = 0;
 	bool compensated = e->step->program->compensated;
 	member[count++] = (struct member){ "y", states };
+	if (e->step->modal)
+		member[count++] = (struct member){ "set", states };
 	if (compensated)
 		member[count++] = (struct member){ "low", states };
 	if (e->step->carried.count)
@@ -254,7 +256,8 @@ static void emit_include(const struct batch *b)
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
 		   { "PEAKS", peak_outputs(e->model) }, { "SIZE", e->step->layout.size },
 		   { "MOMENTA", any_momentum(e) }, { "SAMPLED", b->sampled }, { "RAMPS", e->ramps },
-		   { "FLUSHES", flush ? flush->parts : 0 }, { "DECAYING", flush ? flush->decaying : 0 },
+		   { "FLUSHES", flush ? flush->parts : 0 },
+		   { "FLUSHES_BESIDE", flush && flush->beside }, { "DECAYING", flush ? flush->decaying : 0 },
 		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));

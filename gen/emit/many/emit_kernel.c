@@ -25,8 +25,11 @@ static void check_kernel(const struct emitter *e, const char *target)
 void emit_kernel(const struct emitter *e, const char *target)
 {
 	const bool opencl = strcmp(target, "opencl") == 0, cuda = strcmp(target, "cuda") == 0;
+	const bool openmp = !opencl && !cuda;
 	check_kernel(e, target);
-	struct batch b = plan_batch(e);
+	struct emitter on_device = *e;
+	on_device.device = opencl ? "__constant" : cuda ? "static __device__ const" : "static const";
+	struct batch b = plan_batch(&on_device);
 	say(e, "\n"
 	       "/* For %s: a work item steps one instance. The host is the C of plgen --batch: it has the arrays, and\n"
 	       " * what all share comes from $n_batch_share. Bits are those of $n_batch where products are not\n"
@@ -39,6 +42,8 @@ void emit_kernel(const struct emitter *e, const char *target)
 	emit_sizes(e, "kernel.h", { "STEPPED", batch_stepped_rows(e) }, { "OUTPUTS", e->model->outputs },
 		   { "SHARED", b.shared }, { "LANES", b.lanes }, { "OPENCL", opencl }, { "CUDA", cuda });
 	say(e, "#include \"kernel.h\"\n");
+	say(e, "%s", openmp ? "#pragma omp declare target\n" : "");
 	emit_lanes_step(&b);
 	emit_lanes_out(&b);
+	say(e, "%s", openmp ? "#pragma omp end declare target\n" : "");
 }

@@ -2,6 +2,7 @@
 /* Lanes of NAME_batch: what instances share of a step and what each has of its own; one step, and its outputs, of as
  * many instances as there are lanes, from the arrays and back. */
 #include "inner.h"
+#include "emit/linear/blocks.h"
 #include "emit/series/series.h"
 #include "emit/state.h"
 #include "emit/steps.h"
@@ -132,6 +133,20 @@ static struct tape *outputs_as_rows(const struct emitter *e)
 	return leaves_lanes(e) && tape_reads(t, TAPE_TABLE, -1, -1) ? NULL : t;
 }
 
+/* Of a step that loops: what acts, as it stands in `now` */
+static void share_acting(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	const struct table *table = e->step->branch->full;
+	const char **text = acting_texts(e);
+	for (int k = 0; k < table->columns + table->inputs; k++) {
+		const bool acts = k >= table->columns || e->step->program->uses[k];
+		if (strcmp(text[k], "1.0") != 0)
+			text[k] = acts ? format("now[%d]", share(b, 0, text[k])) : "0.0";
+	}
+	b->acting = text;
+}
+
 struct batch plan_batch(const struct emitter *e)
 {
 	struct batch b = { .e = e, .forced = -1, .step = tape_new(),
@@ -144,8 +159,10 @@ struct batch plan_batch(const struct emitter *e)
 	} else if (has_series(e)) {
 		plan_series(&b);
 	} else {
-		tape_of_step(b.step, &now, NULL, "y", NULL);
+		tape_of_step(b.step, &now, states_in_rows(e), "y", NULL);
 		share_operands(&b, b.step, 0, shared_operand);
+		if (e->step->program->loops)
+			share_acting(&b);
 	}
 	b.after = b.shared;
 	b.out_alone = !b.out;
@@ -209,6 +226,8 @@ static const char *operand_over_lanes(const void *context, const struct tape_nod
 		return batch_factor(over->b, param_text(e, n->index));
 	if (n->op == TAPE_ACCUMULATE)
 		return rest_row(e, n);
+	if (n->op == TAPE_TABLE && n->part == TABLE_SEEN)
+		return spell(e, "$n_lanes_dot($n_seen[%d], y)", n->index);
 	if (n->op == TAPE_TABLE)
 		return batch_factor(over->b, linear_entry(e, n));
 	return format("now[%d]", share(over->b, over->from, over->text_of(e, n)));
@@ -232,7 +251,6 @@ void emit_over_lanes(struct batch *b, const struct tape *t, int from, shared_tex
 	if (broken)
 		internal_error(b->e->step, broken);
 	tape_print(t, &to, b->e->to);
-	close_function(b->e, "now factor");
 }
 
 static void number_entries(struct batch *b, const struct tape *t)
@@ -242,10 +260,28 @@ static void number_entries(struct batch *b, const struct tape *t)
 			batch_factor(b, linear_entry(b->e, tape_node(t, i)));
 }
 
+/* Tables of blocks alike stand in one piece, as loops read them. */
+static void number_tables(struct batch *b)
+{
+	const struct program *program = b->e->step->program;
+	b->own = ARRAY(int, (size_t)program->groups + 1);
+	for (int k = 0; k < program->groups; k++) {
+		const struct group *g = &program->group[k];
+		const struct group_shape shape = shape_of_group(b->e, g);
+		b->own[k] = b->factors;
+		for (int i = 0; g->tuned && g->kind == GROUP_ALIKE && i < shape.rows * shape.columns; i++) {
+			ENLARGE(b->factor_text, (size_t)b->factors + 1);
+			b->factor_text[b->factors++] = format("s->coeffs.alike%d[%d][%d]", k, i / shape.columns,
+							      i % shape.columns);
+		}
+	}
+}
+
 static void number_factors(struct batch *b)
 {
 	const struct emitter *e = b->e;
 	number_entries(b, b->step);
+	number_tables(b);
 	number_entries(b, b->out);
 	for (int p = 0; p < peak_outputs(e->model); p++) {
 		for (int i = 0; i < e->system->states; i++)
@@ -265,18 +301,31 @@ static void number_factors(struct batch *b)
 void emit_lanes_step(struct batch *b)
 {
 	const struct emitter *e = b->e;
+	const bool loops = e->step->program->loops;
+	struct emitter wide = *e;
+	wide.wide = true;
+	wide.own = b->own;
+	if (loops) {
+		emit_groups(&wide);
+		emit_modes(&wide);
+	}
 	open_function(e, "One step of as many instances as there are lanes; now: what they share",
 		      "PL_LANES_INLINE void $n_lanes_step(pl_lanes *y, const pl_lanes *factor, const double *now)");
 	for (int i = 0; i < e->system->states; i++)
 		if (tape_reads(b->step, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = y[%d];\n", e->local[i], i);
 	emit_over_lanes(b, b->step, 0, shared_operand);
+	if (loops)
+		emit_loops_of_step(&wide, b->acting);
+	close_function(e, "now factor");
 }
 
 /* A state as outputs read it: of momenta the velocity, of a transient the whole, particular solution added */
 static const char *state_over_lanes(const struct batch *b, int i)
 {
 	const char *mass = factor_of_momentum(b->e, i), *kept = format("y[%d]", i);
+	if (b->e->step->modal)
+		return spell(b->e, "$n_lanes_dot($n_from_modes[%d], y)", i);
 	if (mass)
 		kept = format("%s / %s", kept, mass);
 	return b->forced >= 0 ? format("%s + now[%d]", kept, b->forced + i) : kept;
@@ -292,6 +341,7 @@ void emit_lanes_out(struct batch *b)
 		if (tape_reads(b->out, TAPE_STATE, i, 0))
 			say(e, "    const pl_lanes %s = %s;\n", e->local[i], state_over_lanes(b, i));
 	emit_over_lanes(b, b->out, b->after, shared_operand);
+	close_function(e, "now factor");
 }
 
 /* ---- peaks ---- */

@@ -67,6 +67,7 @@ void emit_lanes_of_series(struct batch *b)
 		      "PL_LANES_INLINE void $n_lanes_expand(const pl_lanes *y, const pl_lanes *factor,\n"
 		      "    const double *now, pl_lanes (*c)[$N_STATES])");
 	emit_over_lanes(b, b->step, 0, shared_of_series);
+	close_function(e, "now factor");
 	emit_lanes_total(e);
 	emit_sizes(e, "series_lanes.h", { "STATES", e->system->states }, { "ORDER", own_expansion(e)->order },
 		   { "OVER", spans_steps(e) ? e->model->truncation.over : 1 });

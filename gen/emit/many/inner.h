@@ -14,6 +14,8 @@ struct batch {
 	bool out_alone;                 /* outputs are no such sums: they are those of NAME_out */
 	int forced;                     /* index of the forced part; -1: none */
 	bool sampled;                   /* of peaks: nothing acts on the states but polynomials through samples */
+	const char **acting;            /* of a step that loops: what acts on blocks and modes */
+	int *own;                       /* ... and of each group where its table begins in the factors of an instance */
 	int lanes;                      /* factors of the instance that lanes have; */
 	int factors;                    /* of an instance, that its params decide */
 	const char **factor_text;       /* s->coeffs.step[0][1] */
