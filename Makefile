@@ -91,7 +91,6 @@ bench: tests
 	ninja -C $(BUILD) benchmarks
 	sh bench/generate.sh $(BUILD)
 	$(BUILD)/bench/apply
-	sh bench/run.sh $(BUILD)
 	sh bench/steps.sh $(BUILD)
 	sh bench/retune.sh $(BUILD)
 	sh bench/retune_blocks.sh $(BUILD)

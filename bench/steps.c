@@ -14,10 +14,10 @@
 #include <string.h>
 
 enum { SAMPLES = 501, STEPS = 20, CHAIN = 20, RUN = 2000, LOOKED_AT = 400000, APART = 101, MODELS = 2 };
-enum kind { CLEAR, STICKS, TO_STICK, EVENT, CHANGE, AS_IT_COMES, KINDS };
+enum kind { CLEAR, STICKS, TO_STICK, EVENT, CHANGE, AS_IT_COMES, ROWS, KINDS };
 static const char *const names[2][KINDS] = {
-	{"clear", "", "", "an event", "a change of the load", "a run"},
-	{"slips", "sticks", "slip to stick", "stick to slip", "a change of the load", "a run"}};
+	{"clear", "", "", "an event", "a change of the load", "a run", "a row of run"},
+	{"slips", "sticks", "slip to stick", "stick to slip", "a change of the load", "a run", "a row of run"}};
 
 /* What a model has of these; steps.sh adds NAME_segment */
 #define OF_MODEL(name)                                                             \
@@ -32,6 +32,7 @@ struct measured {
 	uint64_t (*crossed)(const void *s);
 	int (*region)(const void *s), (*segment)(const void *s);        /* each NULL: it has none */
 	char *state, *from[KINDS];      /* STEPS states of each kind */
+	double *rows;
 	int count[KINDS];
 	double least[KINDS][2];         /* ns; of putting the state there, with the steps */
 };
@@ -67,15 +68,18 @@ static void look(struct measured *m, int rubs)
 	const size_t size = m->model->size;
 	char before[size];
 	m->state = calloc(1 + KINDS * STEPS, size);
-	if (!m->state)
+	m->rows = calloc(RUN, (size_t)m->model->outputs * sizeof *m->rows);
+	if (!m->state || !m->rows)
 		exit(1);
 	for (int i = 0; i < KINDS; i++) {
 		m->from[i] = m->state + (size_t)(1 + i * STEPS) * size;
 		m->least[i][0] = m->least[i][1] = INFINITY;
 	}
 	m->model->init(m->state);
-	memcpy(m->from[AS_IT_COMES], m->state, size);
-	m->count[AS_IT_COMES] = 1;
+	for (int i = AS_IT_COMES; i <= ROWS; i++) {
+		memcpy(m->from[i], m->state, size);
+		m->count[i] = 1;
+	}
 	for (int k = 0; k < LOOKED_AT; k++) {
 		memcpy(before, m->state, size);
 		m->model->step(m->state, NULL);
@@ -89,12 +93,14 @@ static void look(struct measured *m, int rubs)
 /* Of a step, parts 0: what putting its state there costs */
 static __attribute__((noinline)) double sample(const struct measured *m, enum kind kind, int parts)
 {
-	const int from = kind == AS_IT_COMES ? 1 : STEPS, chain = kind <= STICKS ? CHAIN : kind < AS_IT_COMES ? 1 : RUN;
+	const int from = kind >= AS_IT_COMES ? 1 : STEPS, chain = kind <= STICKS ? CHAIN : kind < AS_IT_COMES ? 1 : RUN;
 	const double start = own_nanoseconds();
 	for (int k = 0; k < from; k++) {
 		memcpy(m->state, m->from[kind] + (size_t)(k % m->count[kind]) * m->model->size, m->model->size);
 		__asm__ volatile("" : : "r"(m->state) : "memory");
-		for (int i = 0; i < parts * chain; i++)
+		if (kind == ROWS && parts)
+			m->model->run(m->state, RUN, NULL, m->rows);
+		for (int i = 0; kind != ROWS && i < parts * chain; i++)
 			m->model->step(m->state, NULL);
 	}
 	return (own_nanoseconds() - start) / (from * chain);
@@ -120,8 +126,8 @@ static void report(const struct measured *m, const char *label, int rubs)
 int main(int argc, char **argv)
 {
 	static struct measured m[MODELS] = {
-		{&subject_model, subject_crossed, subject_region, subject_segment, NULL, {NULL}, {0}, {{0}}},
-		{&plain_model, plain_crossed, plain_region, plain_segment, NULL, {NULL}, {0}, {{0}}}};
+		{&subject_model, subject_crossed, subject_region, subject_segment, NULL, {NULL}, NULL, {0}, {{0}}},
+		{&plain_model, plain_crossed, plain_region, plain_segment, NULL, {NULL}, NULL, {0}, {{0}}}};
 	if (argc != 3 && argc != 6)
 		return 2;
 	const int rubs = atoi(argv[2]);

@@ -5,7 +5,9 @@
 #
 #     clearances  beside the model without stops          contacts  beside the model without friction and impacts
 #     tunable     beside the values written               loads     beside the model without its load
-#     words       compensated, beside one word
+#     words       compensated, beside one word        rows      step by step, beside blocks of rows
+#
+# CC and CFLAGS in the environment: another compiler than gcc, other flags than -O2.
 set -e
 build=$1
 shift
@@ -51,12 +53,13 @@ while IFS='|' read -r topic spec steps rubs subject plain options; do
 		# Words
 		# shellcheck disable=SC2086
 		built subject "$work/subject.spec" --step "$h" $options && built plain "$work/plain.spec" --step "$h"
-		gcc -std=gnu11 -O2 -Iruntime -Ibench -I"$work" bench/steps.c "$work/subject_pl.c" "$work/plain_pl.c" \
-			"$build/libplrt.a" -lm -o "$work/steps"
+		# shellcheck disable=SC2086
+		${CC:-gcc} -std=gnu11 ${CFLAGS:--O2} -Iruntime -Ibench -I"$work" bench/steps.c "$work/subject_pl.c" \
+			"$work/plain_pl.c" "$build/libplrt.a" -lm -o "$work/steps"
 		label="$topic: $(basename "$spec" .spec), h = $h${options:+, $options}"
 		[ "$counts" ] || { "$work/steps" "$label" "$rubs"; continue; }
 		echo "$label"
-		for kind in 0 1 2 3 4 5; do
+		for kind in 0 1 2 3 4 5 6; do
 			of=$(instructions 0 $kind) || continue
 			other=$(instructions 1 $kind || instructions 1 0)
 			echo "$kind $of $other" | awk '{ printf "    kind %d: %.2f times\n", $1, $2 / $3 }'
@@ -76,6 +79,10 @@ tunable|models/bilinear|0.01|0|$s/$/\ntunable m, k1, k2/|
 tunable|models/gear1|0.01 0.1|0|$s/$/\ntunable zeta, b/|
 tunable|models/sdcs|0.01|0|$s/$/\ntunable k2, c1/||--form delta
 tunable|tests/tunable/regions/coupled|0.01|0||/^tunable/d
+rows|models/sdcs|0.01|0|||--rows 1
+rows|models/scs|0.01|0|||--rows 1
+rows|models/sdcsf|0.01|0|||--rows 1
+rows|models/tuned_floor|0.01|0|||--rows 1
 loads|models/sdcsf|0.01|0||s/= F\*cos(w\*t)$/= 0/
 loads|models/sdcsf|0.01|0||s/= F\*cos(w\*t)$/= 0/|--refresh 1
 words|tests/contacts/lasting_gap|0.01|0|||--accuracy compensated
