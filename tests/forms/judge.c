@@ -212,12 +212,14 @@ static bool column_reaches(const struct judge *j, const struct leg *f, const boo
     return reach[i * f->size + at] || reach[i * f->size + at + 1];
 }
 
-/* Twice: what is not apart from 0 with BITS is looked at with MORE_BITS; then it is taken for 0. */
+/* Twice: what is not apart from 0 with BITS, or whose second word they leave open, is looked at with MORE_BITS; what is
+ * not apart from 0 then is taken for 0. */
 static void fill_segment(struct judge *j, int segment)
 {
     struct leg f = flow_in(j, segment);
     const bool *reach = reach_of(&f);
     evaluator_enclosure E;
+    double word, low;
     bool open = true;
     evaluator_enclosure_init(&E, (size_t)f.size);
     for (int bits = BITS; open; bits = MORE_BITS) {
@@ -245,6 +247,7 @@ static void fill_segment(struct judge *j, int segment)
                     open = open || bits == BITS;
                     increment->zero = bits == MORE_BITS;
                 }
+                open = open || (bits == BITS && !judge_words(increment, false, &word, &low));
             }
     }
     evaluator_enclosure_clear(&E);

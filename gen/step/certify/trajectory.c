@@ -69,6 +69,9 @@ static bool move(struct trajectory *t, mpq_srcptr target)
 	bool full;
 	const struct guard *guard = NULL;
 	RATIONAL tau = ZERO;
+	/* of its shortest piece, which no double may hold: a series would not end */
+	if (!(t->at->flow->rate * mpq_get_d(t->at->flow->piece) <= 1))
+		return trajectory_unknown(t, "where it goes: rates or loads are too large");
 	piece_at(t, target, tau, &full);
 	if (full) {
 		step_on_grid(t, t->y);
