@@ -396,8 +396,11 @@ static void print_profile(const struct estimate *best, const struct found *s, in
 		free(e.value);
 		free(e.held);
 	}
-	say_note(format("%s: by its profile 95 %% are %.6g to %.6g", s->unknown[i].name,
-			passed(value, root, -s->reach), passed(value, root, s->reach)));
+	const double low = passed(value, root, -s->reach), high = passed(value, root, s->reach);
+	say_note(isnan(low) || isnan(high)
+			 ? format("%s: its profile has no 95 %% on both sides within three standard errors",
+				  s->unknown[i].name)
+			 : format("%s: by its profile 95 %% are %.6g to %.6g", s->unknown[i].name, low, high));
 }
 
 static void print_profiles(const struct estimate *e, const struct found *s, FILE *to)
