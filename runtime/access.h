@@ -20,8 +20,8 @@
  *     PL_PLACES                  1: PL(place)(s) finds what follows from a state that was set
  *     PL_MASSES                  of the state: with masses.h
  *     PL_OWN                     1: member coeffs, which begins as PL(nominal)
- * PL_RAMPS, PL_PAST_SAMPLES          1: members slope and PL(hold); of inputs through PL(past_samples)[] + 1 samples at
- * most, past
+ *     PL_RAMPS, PL_PAST_SAMPLES   1: members slope and PL(hold); of inputs through PL(past_samples)[] + 1 samples at
+ *                                most, past
  *     PL_H, PL_ELAPSED           step; time since t0 [s]
  *     PL(initial)[], PL(initial_set)[]     the first state as it is kept; the same as written */
 #include "numbers.h"

@@ -366,7 +366,7 @@ PL_LANES_INLINE void PL(lanes_end)(PL_INSTANCES *b, size_t j, PL(steps_ahead) *a
     PL(batch_one_by_one)(b, j, ahead, NULL);
 }
 
-/* Instances from `first` on: mostly clear by what states and outputs are at most */
+/* Instances from `first` on: bounds of states and outputs show most steps to be event-free */
 PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, const int groups)
 {
     pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];

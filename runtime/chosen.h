@@ -16,8 +16,7 @@
  *     PL_AT_BREAKPOINTS          1: states are put onto them
  *     PL_IN_PARTS                1: a step goes from part to part, each within one segment; else as it likes
  *     PL(series_switching)                a pl_series_switching, of the series
- * PL(breaks), PL(breakpoint) of each switching function how many breakpoints; these, one switching function behind the
- * other */
+ *     PL(breaks), PL(breakpoint)          of each switching function how many breakpoints; all of these in its order */
 #include "numbers.h"
 
 #define PL_LOCATES (PL_ORDER > 0 && PL_SWITCHING_FUNCTIONS > 0 && !PL_CONTACTS)

@@ -65,8 +65,8 @@ void pl_switching_start(const pl_switching *m, const real *x, pl_contact *c, rea
 
 /* ---- an event-free piece ---- */
 
-/* Whether every switching function, known to be within low .. high, is clear of the breakpoints beside it */
-static int clear(const pl_switching *m, int region, const real *low, const real *high)
+/* Whether every switching function, known to be within low .. high, keeps off the breakpoints beside it */
+static int event_free(const pl_switching *m, int region, const real *low, const real *high)
 {
     walk w;
     for (w = first_switch(m->at); arrive(m->switches, m->breaks, region, &w); leave(&w)) {
@@ -104,7 +104,7 @@ static int stays_event_free(const pl_switching *m, const pl_contact *c, const re
     pl_multiply(s, n, m->row, y, to);
     pl_multiply(s, n, rows_of(m->chord_error, m, c), size, off);
     span(s, from, to, off, low, high);
-    if (clear(m, c->region, low, high)) {
+    if (event_free(m, c->region, low, high)) {
         return 1;
     }
     pl_multiply(s, n, rows_of(m->cubic_error, m, c), size, off);
@@ -117,7 +117,7 @@ static int stays_event_free(const pl_switching *m, const pl_contact *c, const re
         low[i] = smaller(smaller(from[i], to[i]), smaller(leaving, arriving)) - off[i];
         high[i] = larger(larger(from[i], to[i]), larger(leaving, arriving)) + off[i];
     }
-    return clear(m, c->region, low, high);
+    return event_free(m, c->region, low, high);
 }
 
 /* The same of a longer one, by x'' where it begins.  work: 2 size + 5 switches */
@@ -135,7 +135,7 @@ static int stays_event_free_far(const pl_switching *m, const pl_contact *c, clim
         pl_multiply(1, n, reach, bend, &off[i]);
     }
     span(s, from, to, off, low, high);
-    return clear(m, c->region, low, high);
+    return event_free(m, c->region, low, high);
 }
 
 /* ---- the first crossing in a piece of a step ---- */

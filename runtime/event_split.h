@@ -7,10 +7,11 @@
  *     PL_STATES, PL_ACTING, PL_FORCES   of x, which is the states, what acts on them (load states, inputs, slopes of
  *                                inputs), and each force of the remainder with two derivatives
  *     PL_FASTEST                 the sizes |A| have no larger pole [1/s]
- * PL_FAST_PATH, PL_CERTAIN       1: cubics over whole steps say little, as poles turn by much; of a step that they do
+ *     PL_CERTAIN, PL_FAST_PATH   the longest part [h] in which cubics follow the fastest pole; 1: it is below a step
  *     PL_CARRIES                 entries of the member carry, which a step changes
  *     PL_MAX_SPLITS              halvings in the search of a crossing
- * PL_TERMS                   what is watched: switching functions, and behind them what the search of events looks at
+ *     PL_TERMS                   what is watched: switching functions, and behind them what the search of events looks
+ *                                at
  *
  *     PL(column)[]               of each switching function: where it stands in the series, of order 2
  *     PL(passing)                a pl_series_switching of cubics of each

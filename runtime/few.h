@@ -14,7 +14,7 @@
  *     PL_FEW, PL_EVENT_CHECKS, PL_LARGE crossings and looks at most; how large the sum of |x| may be
  *     PL_OPEN_END                beyond all breakpoints
  *     PL_MOVES                   the degree of polynomials over h, of x in two words
- * PL_TANGENT, PL_CUBIC_ERROR           of whole steps: a third of h e'; h^4/384 e'''' at most; each [which][i][PL_SIZE]
+ *     PL_TANGENT, PL_CUBIC_ERROR   of whole steps: a third of h e'; h^4/384 e'''' at most; each [which][i][PL_SIZE]
  *
  *     PL(within), PL(beyond)     [region][i][up]: the ends of its interval, and the region behind; -1: none can be
  *     PL(span)                   [region][i]: its interval, from the lowest one
@@ -248,7 +248,7 @@ static int PL(first)(PL(subinterval) *p, double x[PL_VECTOR], const double end[P
 {
     double off[PL_SWITCHING_FUNCTIONS], y[PL_SIZE], z = 2.0;
 #if PL_SWITCHING_FUNCTIONS > 1
-    int unclear[PL_SWITCHING_FUNCTIONS];
+    int undecided[PL_SWITCHING_FUNCTIONS];
 #endif
     int i, near = 0, first = 0, up = 0, behind, next;
     PL(bounds)(p->which, x, off);
@@ -269,7 +269,7 @@ static int PL(first)(PL(subinterval) *p, double x[PL_VECTOR], const double end[P
         }
         about = PL(guess)(p->which, i, above ? 1.0 : -1.0, within[above], behind == above, x, end, p->length);
 #if PL_SWITCHING_FUNCTIONS > 1
-        unclear[near] = i;
+        undecided[near] = i;
 #endif
         near++;
         if (about < z) {
@@ -292,7 +292,7 @@ static int PL(first)(PL(subinterval) *p, double x[PL_VECTOR], const double end[P
     }
 #if PL_SWITCHING_FUNCTIONS > 1
     for (i = 0; i < near; i++) { /* others that are passed, but later */
-        const int other = unclear[i];
+        const int other = undecided[i];
         behind = other == p->passed ? p->behind : -1;
         if (other != first && !PL(keeps)(p->region, p->which, other, behind, x, y, z, off[other])) {
             return -1;

@@ -8,7 +8,7 @@
  *     PL_SEGMENTS                of time, in which loads have their formulas
  *     PL_BLOCKS                  independent ones, that are taken one after the other: the states of each are those of
  *                                PL(block_state)[] from PL(block_first)[block] on; 1: the model is one
- * PL_CONVERTED               1: what is kept are not the states: PL(stored_state)(s, y) and PL(store_state)(s, y);
+ *     PL_CONVERTED               1: what is kept are not the states: PL(stored_state)(s, y) and PL(store_state)(s, y);
  *                                not of several blocks
  *     PL_COMPENSATED                    1: of each state what rounding took is in s->low
  *     PL_CARRIES                 of so many, PL(carried)[], it is in s->carry

@@ -12,7 +12,7 @@ enum { GO_ON, SEARCH_NO_MORE, STAY }; /* behind an event: STAY, x is held there 
 
 typedef struct climb {
     int rung, rungs;  /* where it is; rungs: that of h */
-    int steady, wait; /* pieces that stayed clear, of those that it takes before a longer one is tried */
+    int steady, wait; /* event-free pieces, of those that it takes before a longer one is tried */
     int tried;        /* this one is */
     int bent;         /* x'' is known */
     int rested;       /* what rounding has taken from x is known */
@@ -90,7 +90,7 @@ static inline void keep_piece(int n, const climb *at, const real *y, real *x, re
     }
 }
 
-/* It was clear: a longer one is tried, or after as many as it takes where the last trial was in vain. */
+/* It was event-free: a longer one is tried, or after as many as it takes where the last trial was in vain. */
 static inline void rise(climb *at)
 {
     at->bent = 0;

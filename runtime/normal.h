@@ -15,26 +15,24 @@
  *     PL_SWEEPS, PL_FIRST_SWEEPS from forces of the step before; where it begins anew
  *     PL_FUNCTIONS               of time, that forces read
  *     PL_FORCINGS                   values of known loads
- * PL_OPERATORS                   operators; of several PL_SELECTOR is the function of time that says which one serves
+ *     PL_OPERATORS               operators; of several PL_SELECTOR is the function of time that says which one serves
  *     PL_SEGMENTS                of time, in which loads and functions have their formulas
  *     PL_STEADY, PL_STEADY_IN  whether all functions are constant in the last one; the operator of the step then
  *     PL_AT                      whether there are states inside a step, by within.h
- * PL_IN_MODES                1: part of event_split.h, whose step is PL(full_step), by collocation: s->y is the state,
- * and
- *                                functions of time are the time of the node alone
+ *     PL_IN_MODES                1: part of event_split.h, whose step is PL(full_step), by collocation: s->y is the
+ *                                state, and functions of time are the time of the node alone
  *     PL_PEAKS                   above 0: peaks.h has PL(step), and its PL(one_step) is here
  *
  *     PL(functions)(s, node, start, f)   functions of time at a node, with the formulas that hold at `start` [s]
  *     PL(forcings)(s, forcing)                 values of known loads now
- * PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in event_split.h PL(on_modes)(which, left, force):
- * those
- *                                of the remainder
+ *     PL(mode_forces)(s, which, f, eta, rate, force)   on the modes; in event_split.h PL(on_modes)(which, left, force):
+ *                                those of the remainder
  *     PL(modes_of)(which, q, mode), PL(of_modes)(which, mode, q)   modes of coordinates, and back
  *     PL(node_modes)(s, which, node, force, forcing, eta, rate)   modes at a node, 1 to PL_STAGES, from forces at all
  *     PL(forces_ahead)(s, force)         of collocation: those at the nodes that go on from the step before
  *     PL(predict)(s, which, forcing, eta, rate, expected)   of points: modes after the step, and the forces there
  *     PL(correct)[][2][PL_WIDTH]         what a force adds by its excess over that, of all operators or of one
- * PL(bound)[], PL(next)[][][]        of a schedule: value up to which each operator serves; modes of the next from its
+ *     PL(bound)[], PL(next)[][][]   of a schedule: value up to which an operator serves; modes of the next from its
  *     PL(still)(x, forcing, sum)            once steady: [omega eta, eta'] after a step from those before
  *     PL(omega)[2][PL_WIDTH]             omega, 1 over it
  *     PL(until), PL(change)              of segments: time to each change, and the changes

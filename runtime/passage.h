@@ -4,9 +4,10 @@
  * behind a breakpoint the step ends, and is made anew with that length, since its end is more exact than its inside.
  * The model's file defines beside what radau.h asks
  *
- * PL(watch)(known, interval, y, value, terms)   the switching functions at y; the sizes of what they are summed from
- * PL(breaks), PL(breakpoint), PL(passing)       of each switching function how many breakpoints, these, a
- * pl_series_switching
+ *     PL(watch)(known, interval, y, value, terms)   the switching functions at y; the sizes of what they are summed
+ *                                from
+ *     PL(breaks), PL(breakpoint), PL(passing)   of each switching function how many breakpoints, these, a
+ *                                pl_series_switching
  *
  * and a member contact.  Where there are impacts, contacts at rest and friction, what these are watched by stands
  * behind the switching functions, PL_TERMS in all, the first PL_WAYS by polynomials, and is looked for like them; what

@@ -40,12 +40,12 @@ static event move(const searched *m, instant *at, const climb *up, real dt, cons
     return first;
 }
 
-/* x on by tau; fresh: the region may be another one than before.  Whether it was clear all the way */
+/* x on by tau; fresh: the region may be another one than before.  Whether all of it was event-free */
 static int go(const searched *m, instant *at, real tau, int fresh)
 {
     const int n = m->size;
     real left = tau, *y = at->work, *bend = y + WORDS * n, *x_low = bend + n, *work = x_low + 2 * n;
-    int splits = m->max_splits, clear = 1;
+    int splits = m->max_splits, event_free = 1;
     climb up = at_top;
     at->work = work;
     while (left > REST * m->h) { /* nothing for what rounding leaves */
@@ -70,7 +70,7 @@ static int go(const searched *m, instant *at, real tau, int fresh)
         if (fall(&up)) {
             continue;
         }
-        clear = 0;
+        event_free = 0;
         if (fresh) {
             fresh = 0;
             take_up(m, at, tau - left);
@@ -97,5 +97,5 @@ static int go(const searched *m, instant *at, real tau, int fresh)
         splits = how == SEARCH_NO_MORE ? -1 : splits;
     }
     VARIED(end_event(m, at);)
-    return clear;
+    return event_free;
 }

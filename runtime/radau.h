@@ -10,7 +10,7 @@
  *     PL_ENTRIES                 of the Jacobian that are not 0
  *     PL_INPUTS, PL_KNOWN        samples; numbers that the equations read beside the state
  *     PL_SEGMENTS                of time, in each of which the loads have a formula: member leg; 1: just one
- * PL_SWITCHING_FUNCTIONS             that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
+ *     PL_SWITCHING_FUNCTIONS     that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
  *                                PL_WATCH_READS: known numbers
  *     PL_CONTACTS                1: impacts, contacts at rest, friction, as passage.h says
  *     PL_CHOICES                 of formulas by t, of a series

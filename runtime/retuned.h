@@ -6,8 +6,8 @@
  *     PL(name), PL_SINGLE, PL_H          the model's prefix before a name; 1: in float; its step [s]
  *     PL_WRAPPED                         1: PL(retune) is the model's own, and calls PL(retune_all)
  *     PL_PARAMS, PL_SIZE, PL_STATES      sizes; of x; states, which x begins with
- * PL_SWITCHING_FUNCTIONS, PL_BREAKS, PL_SEGMENTS     switching functions, breakpoints of all; segments of time of the
- * loads
+ *     PL_SWITCHING_FUNCTIONS, PL_BREAKS, PL_SEGMENTS   switching functions, breakpoints of all; segments of time of the
+ *                                        loads
  *     PL_BRANCHES, PL(system)[]          linear systems that regions have; of each A in x' = A x, no places: it stays
  *     PL(segment)[]                      of each, the segment of time it is of, where there are several
  *     PL_OPERATIONS, PL(formulas)        by which all numbers follow from params
@@ -19,9 +19,9 @@
  *                                        below 0: with the other sign, 0: it stays. 0: all do
  *     PL_HALVINGS, PL_RUNGS              of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
- * PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their rows,
- * what is held,
- *                                        impacts in all segments of time, what friction carries; else 0
+ *     PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their
+ *                                        rows, what is held, impacts in all segments of time, what friction carries;
+ *                                        else 0
  *     PL(guard_branch)[], PL(guard_rung)[] of rows of guards
  *     PL_BOUNDED, PL(bounded)[]          columns of x that are never above 1
  *     PL_EVENT_FREE                          1: event-free steps need no search, for which

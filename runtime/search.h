@@ -23,7 +23,7 @@
  *     PL_REGIONS                 in each segment
  *     PL_LOST, PL_UNTIL(s, k)    of several: whether some cannot be in the next one; when segment k ends
  *     PL_ALONE, PL_BOUNCES       whether it is all of the model, which is asked about; whether something bounces
- * PL_EVENT_FREE, PL_CAPPED       whether most steps are seen to be clear before it is asked: of guards by unmet.h, with
+ *     PL_EVENT_FREE, PL_CAPPED   whether a bound shows most steps to be event-free before: of guards by unmet.h, with
  *                                bit i where x_i is never above 1
  *     PL_FEW                     crossings by few.h, which is included then; 0: none
  *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of

@@ -12,8 +12,8 @@
  *     PL_STRAIGHT                whether one of fixed order is no array, and its sum the model's: PL(full_step)
  *     PL_WRITTEN_OUT             whether sums of a series are the model's: PL(ahead), PL(end), PL(within)
  *     PL_INPUTS, PL_SEGMENTS     samples; in how many spans of time loads have a formula each: segment; 1: just one
- * PL_SWITCHING_FUNCTIONS, PL_TERMS   that choose formulas: contact; these and what contacts watch; PL_CHANGES at one
- * time
+ *     PL_SWITCHING_FUNCTIONS, PL_TERMS   that choose formulas: contact; these and what contacts watch; PL_CHANGES at
+ *                                one time
  *     PL_CHOICES                 of formulas by t
  *     PL_CONTACTS                impacts, contacts at rest, friction: PL(events)
  *     PL_MAX_EVENTS, PL_MAX_SPLITS, PL_TRIES     in a step: crossings, halvings in the search of one, series

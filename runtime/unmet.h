@@ -3,7 +3,7 @@
  * search: part of search.h, for small processors of guards.c, and over lanes of NAME_batch of unmet_lanes.h.  The
  * search would take the same one, to the last bit: sums have its order, and what is accepted here leaves nothing to
  * take up, nothing that touches, and each guard below its limit by the bound of the search.  A guard that has just been
- * left, and one that a cubic alone clears, goes by the search.  PL_SUM(row, x) is of PL_SIZE products; bit i of
+ * left, and one that only a cubic shows to be unmet, go by the search.  PL_SUM(row, x) is of PL_SIZE products; bit i of
  * PL_CAPPED is set where x_i is never above 1.  PL_VALUE is a number, or lanes of numbers, and what is true then so in
  * some lanes. */
 #ifndef PL_VALUE

@@ -7,8 +7,8 @@
  *     PL(of_nodes)[], PL(of_past)[]     of polynomials through forces at nodes, through past ones and the new one:
  *                                powers 1 and up from what the other forces exceed that at the start by
  *     PL(stiffness)[][PL_WIDTH], PL(damping)[][PL_WIDTH]   of each operator: lambda [1/s^2], 2 delta [1/s] of each mode
- * PL(swing_on)(which, by, forcing, swing, force)   of known loads: adds their part to the forces of a term, their next
- *                                term to forcing */
+ *     PL(swing_on)(which, by, forcing, swing, force)   of known loads: adds their part to the forces of a term, their
+ *                                next term to forcing */
 
 #if PL_POINTS > 0
 #define PL_DEGREE PL_POINTS

@@ -4,8 +4,8 @@
  *
  *   direct            y = Phi y. Where |pole| h is small, Phi - I loses the digits that the 1 takes.
  *   delta             y += (Phi - I) y, Phi - I rounded relative to itself
- *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic whatever their
- * rounding
+ *   kick-drift-kick   p += X q; q += S p; p += X q; of undamped systems, S and X symmetric: symplectic, however
+ *                     they are rounded
  *
  * p is velocity times mass, masses in units of the first, so that equal masses leave velocities as they are. */
 #include "inner.h"
