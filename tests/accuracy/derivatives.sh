@@ -503,7 +503,7 @@ made=$?
 result $made 'the judge of events is made'
 if [ $made -eq 0 ]; then
 	most=10 grazing=10 seed=0 reported=0 endless=0
-	[ "$seeds" -gt 16 ] && most=500 grazing=100
+	[ "$seeds" -gt 16 ] && most=$seeds grazing=$seeds
 	while [ "$seed" -lt "$most" ]; do
 		seed=$((seed + 1))
 		judged_events spec $seed >judged 2>>log

@@ -1,16 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What the MISRA C 2012 addon of cppcheck finds in generated code or in the runtime, whose headers with algorithms are
+# What the MISRA C 2012 addon of cppcheck finds in generated code and in the runtime, whose headers with algorithms are
 # read where models include them: of each rule no more than doc/firmware/misra.csv has, and no rule that is not
 # there. A case for each file, once it has been read, and for each rule.
 #
-#     misra.sh PLGEN SOURCE_ROOT models | runtime
+#     misra.sh PLGEN SOURCE_ROOT
 #     misra.sh PLGEN SOURCE_ROOT --table      prints what that table says, a rule a line: rule, in the models, in the
 #                                             runtime
 set -u
 plgen=$1
 root=$(cd "$2" && pwd) || exit 99
-part=$3
+mode=${3-}
 case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/tap.sh"
 . "$root/tests/cases.sh"
@@ -34,17 +34,18 @@ make tunables tests/tunable/changes.spec
 make operators models/beam4.spec --scheme etdrk4
 
 # look PLACES FILES: adds what is found, FILE:LINE:COLUMN RULE; a case for each file, in which some is
+# As gcc reads them: of itself cppcheck takes a dozen sets of macros, of which those of the runtime have files.
 look() {
 	places=$1
 	shift
 	for file; do
-		cppcheck --quiet --addon=misra --std=c99 -I"$root/runtime" \
+		cppcheck --quiet -D__GNUC__=12 --addon=misra --std=c99 -I"$root/runtime" \
 			--template='{file}:{line}:{column} {id}' "$file" >said 2>&1
 		cat said >>"$places"
 		grep -q 'misra-c2012' said
 		found=$?
 		cp said log
-		[ "$part" = --table ] || result $found "$part: ${file##*/} is read"
+		[ "$mode" = --table ] || result $found "${places#in_}: ${file##*/} is read"
 	done
 }
 : >in_models
@@ -52,7 +53,7 @@ look() {
 look in_models ./*.c
 # cppcheck writes beside what it reads
 cp -r "$root/runtime" runtime_copy
-[ "$part" = models ] || look in_runtime runtime_copy/*.c
+look in_runtime runtime_copy/*.c
 
 # rules PLACES: rule and count, each place once
 rules() {
@@ -66,22 +67,18 @@ rules of_runtime >runtime
 awk 'FILENAME == "models" { models[$1] = $2; rule[$1] } FILENAME == "runtime" { runtime[$1] = $2; rule[$1] }
 	END { for (r in rule) print r, models[r] + 0, runtime[r] + 0 }' models runtime |
 	sort -t . -k 1,1n -k 2,2n >found
-if [ "$part" = --table ]; then
+if [ "$mode" = --table ]; then
 	cat found
 	exit 0
 fi
 
 # The table: rule,kind,in the models,in the runtime,why
 awk -F, 'NR > 1 { print $1, $3 + 0, $4 + 0 }' "$root/doc/firmware/misra.csv" >allowed
-column=2
-[ "$part" = models ] || column=3
 while read -r rule models runtime; do
-	times=$models
-	[ "$part" = models ] || times=$runtime
-	most=$(awk -v rule="$rule" -v column=$column '$1 "" == rule "" { print $column }' allowed)
-	echo "rule $rule: $times, in the table ${most:-nothing}" >log
-	[ "$times" -le "${most:--1}" ]
-	result $? "$part: rule $rule, $times times, not more than doc/firmware/misra.csv says"
+	most=$(awk -v rule="$rule" '$1 "" == rule "" { print $2, $3 }' allowed)
+	echo "rule $rule: $models, $runtime, in the table ${most:-nothing}" >log
+	[ -n "$most" ] && [ "$models" -le "${most% *}" ] && [ "$runtime" -le "${most#* }" ]
+	result $? "rule $rule, $models and $runtime times, not more than doc/firmware/misra.csv says"
 done <found
-[ "$(wc -l <found)" -gt 15 ] || result 1 "$part: only $(wc -l <found) rules were found"
+[ "$(wc -l <found)" -gt 15 ] || result 1 "only $(wc -l <found) rules were found"
 tap_end
