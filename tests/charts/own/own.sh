@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# own.sh BUILD ROOT [SPEC...]: the chart of any spec, on these, or all models: errors and orders, never times; and what
-# it refuses, with the reason.
+# own.sh BUILD ROOT [SPEC...]: the chart of any spec, on these, or all models, or with STRIDE=N in the environment each
+# N-th: errors and orders, never times; and what it refuses, with the reason.
 set -u
 build=$1 root=$2
 shift 2
@@ -9,7 +9,8 @@ here=$root/tests/charts/own
 . "$root/tests/tap.sh"
 # what bounces or sticks is refused: below. Words: names of files
 # shellcheck disable=SC2046
-[ $# -gt 0 ] || set -- $(cd "$root" && grep -Le '^when' -e restitution -e '[^a-z]friction(' models/*.spec)
+[ $# -gt 0 ] || set -- $(cd "$root" && grep -Le '^when' -e restitution -e '[^a-z]friction(' models/*.spec |
+	awk -v by="${STRIDE:-1}" 'NR % by == 0')
 
 chart() {
     (cd "$root" && exec sh bench/charts/own/own.sh -q "$build/plgen" "$@") >log 2>&1
