@@ -124,6 +124,8 @@ int main(int count, char **argument)
 	static scene_coeffs fresh;
 	const double values[] = { SCENE_VALUES };
 	const int refused = scene_retune(&fresh, values, SCENE_H);
+	if (refused == PL_OUT_OF_RANGE)        /* the order of breakpoints is another, which it says */
+		return 2;
 	if (refused)
 		printf("# retune: %d\n", refused);
 	scene_use(&s, &fresh);
