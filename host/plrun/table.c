@@ -47,6 +47,11 @@ static bool is_blank(const struct table *t)
 	return true;
 }
 
+static bool is_comment(const struct table *t)
+{
+	return t->at.length > 0 && t->at.line[0] == '#';
+}
+
 /* ; before tabs before commas, whichever the line has outside quotes */
 static char separator_of(struct place line)
 {
@@ -180,7 +185,7 @@ void table_begin(struct table *t, const char *path, char *text, size_t length)
 			fail_at(t->at, NULL, "expected rows of numbers, found the end of the file");
 		}
 		named = named ? named : named_separator(t->at);
-	} while (is_blank(t) || t->at.line[0] == '#' || named_separator(t->at));
+	} while (is_blank(t) || is_comment(t) || named_separator(t->at));
 	t->separator = named ? named : separator_of(t->at);
 	split(t);
 	t->columns = t->cells;
@@ -197,7 +202,7 @@ static bool skip_end(struct table *t)
 {
 	struct place gap = t->at;
 	while (next_line(t))
-		if (!is_blank(t))
+		if (!is_blank(t) && !is_comment(t))
 			fail_at(gap, NULL, "a row is missing: the line is empty, and others follow it");
 	t->at = gap;
 	return false;
@@ -205,8 +210,10 @@ static bool skip_end(struct table *t)
 
 bool table_next(struct table *t)
 {
-	if (!next_line(t))
-		return false;
+	do {
+		if (!next_line(t))
+			return false;
+	} while (is_comment(t));
 	if (is_blank(t) && (t->columns == 1 || t->separator != '\t' || t->at.length == 0))
 		return skip_end(t);
 	split(t);

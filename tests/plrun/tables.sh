@@ -69,9 +69,10 @@ written 'semicolons, decimal commas, times' semicolon.csv
 written 'tabs, times' tab.csv
 (echo '"push","time [s]","road"'; awk '{ print "\"" $3 "\",\"" $1 "\",\"" $2 "\"" }' numbers) >quoted.csv
 written 'quotes' quoted.csv
-(printf '\357\273\277# from a logger\r\n\r\nroad , push\r\n'; awk '{ printf " %s ,%s\r\n", $2, $3 }' numbers
-	printf '\r\n\r\n') >dos.csv
-written 'byte order mark, CRLF, comment, blanks, empty lines at the end' dos.csv
+(printf '\357\273\277# from a logger\r\n\r\nroad , push\r\n'
+	awk '{ printf " %s ,%s\r\n", $2, $3 } NR == 2 { printf "# a pause\r\n" }' numbers
+	printf '\r\n# the end\r\n\r\n') >dos.csv
+written 'byte order mark, CRLF, comments, blanks, empty lines at the end' dos.csv
 (echo 'sep=;'; echo 'road;push'; awk '{ print $2 ";" $3 }' numbers) >sep.csv
 written 'a line that names the separator' sep.csv
 (echo '"CH ""1""",CH2,Zeit,CH7'; awk '{ print $2 "," $2 + 1 "," $1 "," $3 }' numbers) >logger.csv
