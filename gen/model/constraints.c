@@ -3,6 +3,7 @@
 #include "building.h"
 #include "capability.h"
 #include "checks.h"
+#include "model/contacts/friction.h"
 #include "state_mass.h"
 
 #include <math.h>
@@ -573,11 +574,22 @@ static void check_inputs(const struct building *b)
 	}
 }
 
+static void check_friction(const struct building *b)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (int i = 0; i < b->spec->count.multipliers; i++) {
+		const struct atom *friction = friction_in(rows_of(b)->constraint[i].by[1], seen);
+		if (friction)
+			error(friction->node->at, NULL, "friction holds by its force: no constraint reads it");
+	}
+}
+
 static void keep(void *context)
 {
 	struct building *b = context;
 	refuse(CAN_CONSTRAINTS, b->model, rows_of(b)->constraint[0].statement->at);
 	check_inputs(b);
+	check_friction(b);
 	build_corrections(b);
 	if (!b->request->again.tunable)
 		meet_constraints(b);

@@ -509,7 +509,7 @@ static void build_parts(struct building *b)
 	check_reduction(b);
 	if (!diagnostics_errors())
 		build_outputs(b);
-	if (!diagnostics_errors() && has_contacts(model))
+	if (!diagnostics_errors())
 		check_contact_outputs(b);
 	if (!diagnostics_errors() && model->switching)
 		build_regions(b);

@@ -220,6 +220,11 @@ static void check_output(void *context)
 	size_t atoms = (size_t)atoms_count(b->collector.atoms);
 	bool *seen = ARRAY(bool, atoms), *read = ARRAY(bool, atoms);
 	const struct form *form = work->output->form ? work->output->form : work->output->left;
+	const struct atom *friction = form && !holds_friction(b) ? friction_in(form, seen) : NULL;
+	if (friction)
+		report_no_equation(friction);
+	if (!has_contacts(model))
+		return;
 	if (form)
 		refuse_of_mechanism(b, work->output, form);
 	if (form && has_bounces(model))

@@ -10,7 +10,7 @@
 
 /* ---- is there any? ---- */
 
-static const struct atom *friction_in(const struct form *form, bool *seen)
+const struct atom *friction_in(const struct form *form, bool *seen)
 {
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct atom *a = (*term)->basis.atom;
@@ -18,6 +18,11 @@ static const struct atom *friction_in(const struct form *form, bool *seen)
 			return a;
 	}
 	return NULL;
+}
+
+void report_no_equation(const struct atom *friction)
+{
+	error(friction->node->at, "an output repeats it as an equation has it", "no equation has this friction");
 }
 
 static const struct atom *first_friction(const struct building *b)
@@ -498,7 +503,7 @@ static int *transmitted_in_segments(struct building *b, const struct switching *
 	b->collector.interval = 0;
 	forget_lets(b->spec);
 	if (!any)
-		error(a->node->at, "an output repeats it as an equation has it", "no equation has this friction");
+		report_no_equation(a);
 	return index;
 }
 
