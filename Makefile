@@ -90,7 +90,6 @@ check-long: tests
 bench: tests
 	ninja -C $(BUILD) benchmarks
 	sh bench/generate.sh $(BUILD)
-	$(BUILD)/bench/apply
 	sh bench/steps.sh $(BUILD)
 	sh bench/retune.sh $(BUILD)
 	sh bench/retune_blocks.sh $(BUILD)

@@ -261,7 +261,6 @@ int  traced_as(mpq_srcptr here, mpq_srcptr there);
 /* x, as the spec's values give it, times the factor: not recorded */
 void product_at_spec(mpq_ptr product, mpq_srcptr x, mpq_srcptr factor);
 const struct traced *trace_record(int *count);              /* as it is by now: what a number is made of, before it */
-struct traced_part traced_constant(long value);
 void traced_add(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
 void traced_sub(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);
 void traced_mul(mpq_ptr result, mpq_srcptr a, mpq_srcptr b);

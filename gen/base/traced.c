@@ -59,6 +59,15 @@ static int enter(struct traced n, mpq_t here, const mpq_t *elsewhere)
 	return (*bucket = trace.count) - 1;
 }
 
+static struct traced_part constant_part(long value)
+{
+	struct traced_part part = { -1, false, NULL };
+	mpq_t *constant = rationals(1);
+	mpq_set_si(*constant, value, 1);
+	part.constant = *constant;
+	return part;
+}
+
 /* That of this size, or 1 over one; -1: none is */
 static int find(mpq_srcptr x)
 {
@@ -74,19 +83,10 @@ static int find(mpq_srcptr x)
 	for (int i = 0; i < ELSEWHERE; i++)
 		if (mpq_sgn(trace.value[inverse].elsewhere[i]) != 0)
 			mpq_inv(elsewhere[i], trace.value[inverse].elsewhere[i]);
-	return enter((struct traced){ TRACED_QUOTIENT, traced_constant(1), { inverse, false, NULL } }, here, elsewhere);
+	return enter((struct traced){ TRACED_QUOTIENT, constant_part(1), { inverse, false, NULL } }, here, elsewhere);
 }
 
 /* ---- what is done ---- */
-
-struct traced_part traced_constant(long value)
-{
-	struct traced_part part = { -1, false, NULL };
-	mpq_t *constant = rationals(1);
-	mpq_set_si(*constant, value, 1);
-	part.constant = *constant;
-	return part;
-}
 
 /* `elsewhere`: its values there */
 static struct traced_part part_of(mpq_srcptr x, int number, mpq_t *elsewhere)

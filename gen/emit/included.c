@@ -141,12 +141,10 @@ static const char *put_word(const struct including *in, FILE *to, const char *te
 	return end;
 }
 
-/* 0x1p-3, 1.5e3 up to a sign: no word begins in it */
+/* No word begins in it */
 static const char *put_digits(FILE *to, const char *text)
 {
-	const char *end = text;
-	while (in_name(*end) || *end == '.')
-		end++;
+	const char *end = behind_number(text);
 	put(to, text, (size_t)(end - text));
 	return end;
 }

@@ -29,7 +29,21 @@ bool is_member(const char *word, const char *text)
 	return word > text && (word[-1] == '.' || (word - text > 1 && word[-2] == '-' && word[-1] == '>'));
 }
 
-const char *behind_plain(const char *text)
+bool is_hexadecimal(const char *text)
+{
+	return text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+}
+
+const char *behind_number(const char *text)
+{
+	const char *exponent = is_hexadecimal(text) ? "pP" : "eE";
+	while (in_name(*text) || *text == '.' || (*text && strchr("+-", *text) && strchr(exponent, text[-1])))
+		text++;
+	return text;
+}
+
+/* A character, and all up to a word, a string, a / */
+static const char *behind_plain(const char *text)
 {
 	text++;
 	while (*text && *text != '/' && *text != '"' && !in_name(*text))

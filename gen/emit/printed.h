@@ -20,7 +20,8 @@ bool in_name(char c);
 size_t name_length(const char *text);
 bool is_named(const char *text, size_t length, const char *name); /* is a word of that length this one? */
 bool is_member(const char *word, const char *text);               /* in the text, behind . or -> */
-const char *behind_plain(const char *text);                       /* a character, and all up to a word, a string, a / */
+bool is_hexadecimal(const char *text);                            /* a number */
+const char *behind_number(const char *text);                      /* 1.5e-3, 0x1p-3, 12u */
 const char *put_other(FILE *to, const char *text);   /* as it is, what begins with no word; returns behind it */
 /* Behind a comment, a string, or a line of the preprocessor that starts here; NULL: none does */
 const char *behind_quoted(const char *text, bool line_start);

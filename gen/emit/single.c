@@ -53,20 +53,12 @@ static const char *print_name(FILE *to, const char *text)
 	return text + length;
 }
 
-static bool is_exponent_sign(const char *c, const char *number)
-{
-	return (*c == '-' || *c == '+') && c > number && c[-1] == 'e';
-}
-
 /* 0x1f has no exponent, 1e-5 has one */
 static const char *print_number(FILE *to, const char *text)
 {
-	bool hexadecimal = text[0] == '0' && (text[1] == 'x' || text[1] == 'X'), real = false;
-	const char *end = text;
-	for (; in_name(*end) || *end == '.' || (!hexadecimal && is_exponent_sign(end, text)); end++)
-		real = real || *end == '.' || (!hexadecimal && *end == 'e');
+	const char *end = behind_number(text);
 	put(to, text, (size_t)(end - text));
-	put(to, "f", real);
+	put(to, "f", text + strcspn(text, is_hexadecimal(text) ? "." : ".e") < end);
 	return end;
 }
 

@@ -46,15 +46,6 @@ static bool is_prefix(const char *at)
 	return *at && strchr("-+*&!~", *at) && !is_blank(at + 1) && at[1] != '=';
 }
 
-static const char *behind_number(const char *at)
-{
-	const bool hexadecimal = at[0] == '0' && (at[1] == 'x' || at[1] == 'X');
-	const char *exponent = hexadecimal ? "pP" : "eE";
-	while (in_name(*at) || *at == '.' || (strchr("+-", *at) && strchr(exponent, at[-1])))
-		at++;
-	return at;
-}
-
 /* Of an operand that is longer: at its [i], (x), .name, ->name, ++, --; NULL: it is whole. Macros leave blanks before
  * some of them. */
 static const char *continued(const char *at)

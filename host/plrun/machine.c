@@ -96,7 +96,8 @@ static bool takes_steps(const struct machine *m)
 	return takes;
 }
 
-struct machine *machine_open(const char *path, const char *name, char **error)
+/* NULL: *error */
+static struct machine *machine_open(const char *path, const char *name, char **error)
 {
 	struct machine *m = need(calloc(1, sizeof *m));
 	char *symbol = format("%s_model", name);

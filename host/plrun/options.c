@@ -53,22 +53,8 @@ static void take_until(struct options *o, const char *value)
 }
 
 static void take_every(struct options *o, const char *value) { o->every = time_of("--every", value); }
-static void take_input(struct options *o, const char *value) { o->input = value; }
-static void take_time(struct options *o, const char *value) { o->time = value; }
-static void take_output(struct options *o, const char *value) { o->output = value; }
-static void take_stats(struct options *o, const char *value) { (void)value; o->stats = true; }
-static void take_peak(struct options *o, const char *value) { (void)value; o->peak = true; }
-static void take_show(struct options *o, const char *value) { o->show = value; }
 static void take_psd(struct options *o, const char *value) { read_window(o, value); }
-static void take_dark(struct options *o, const char *value) { (void)value; o->look.as.dark = true; }
-static void take_paper(struct options *o, const char *value) { (void)value; o->look.as.paper = true; }
 static void take_progress(struct options *o, const char *value) { (void)o; (void)value; progress_always(); }
-static void take_raw(struct options *o, const char *value) { (void)value; o->raw = true; }
-static void take_units(struct options *o, const char *value) { (void)value; o->units = true; }
-static void take_histories(struct options *o, const char *value) { (void)value; o->histories = true; }
-static void take_chart(struct options *o, const char *value) { (void)value; o->chart = true; }
-static void take_page(struct options *o, const char *value) { o->page = value; }
-static void take_resume(struct options *o, const char *value) { (void)value; o->resume = true; }
 
 static void take_log(struct options *o, const char *value)
 {
@@ -125,8 +111,6 @@ static void take_fit(struct options *o, const char *value)
 	for (char *word; (word = strsep(&rest, ",")) != NULL;)
 		add_fit(o, word);
 }
-
-static void take_profile(struct options *o, const char *value) { (void)value; o->profile = true; }
 
 static void take_sigma(struct options *o, const char *value)
 {
@@ -189,60 +173,66 @@ static _Noreturn void print_version(struct options *o, const char *value)
 
 /* ---- the options, in the order of usage ---- */
 
+#define AT(member) offsetof(struct options, member)
+
 static const struct row {
 	const char *name, *argument, *help;     /* argument: NULL: none, in brackets: a picture's name or none */
-	void (*take)(struct options *o, const char *value);     /* NULL: plgen's */
+	void (*take)(struct options *o, const char *value);
+	size_t text, flag;              /* without `take`: what is set to the value, to true; all 0: plgen's */
 } rows[] = {
 	{ "until", "T", "time of the end [s], as T behind the spec (default with --input: where the record ends)",
-	  take_until },
-	{ "every", "DT", "rows and points every DT seconds, a multiple of the step (default: every step)", take_every },
+	  .take = take_until },
+	{ "every", "DT", "rows and points every DT seconds, a multiple of the step (default: every step)",
+	  .take = take_every },
 	{ "input", "FILE.csv", "samples of the inputs, one column each, in any order; - reads standard input",
-	  take_input },
+	  .text = AT(input) },
 	{ "column", "NAME=HEADER", "the input NAME is the column HEADER; columns without use are then passed over",
-	  take_column },
+	  .take = take_column },
 	{ "time", "HEADER", "the column of times [s] (default: one called t or time); without one row k is at k steps",
-	  take_time },
-	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew", take_definition },
-	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)", take_output },
+	  .text = AT(time) },
+	{ "D", "NAME=EXPR", "another value for a param; of a tunable one nothing is compiled anew",
+	  .take = take_definition },
+	{ "o", "FILE.csv", "the rows, or what a sweep comes to, in a file (default: standard output)",
+	  .text = AT(output) },
 	{ "raw", NULL, "the rows as doubles in the machine's order of bytes, t and the columns, no names",
-	  take_raw },
-	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", take_plot },
+	  .flag = AT(raw) },
+	{ "plot", "[FILE]", "a picture by gnuplot: .svg, .png or .pdf; without FILE a window", .take = take_plot },
 	{ "show", "LIST", "outputs or states in rows and picture: z,acc panels, z+zf in one, x:x' is x' over x",
-	  take_show },
-	{ "units", NULL, "... names of columns with their units, x [mm], where the model has some", take_units },
-	{ "log", "x|y|xy", "... logarithmic axes", take_log },
-	{ "title", "TEXT", "... the title (default: the model's name)", take_title },
-	{ "size", "WxH", "... in pixels, with --paper in millimetres", take_size },
-	{ "dark", NULL, "... light on dark", take_dark },
-	{ "paper", NULL, "... for print: a column of 85 mm; .pdf has its fonts inside", take_paper },
+	  .text = AT(show) },
+	{ "units", NULL, "... names of columns with their units, x [mm], where the model has some", .flag = AT(units) },
+	{ "log", "x|y|xy", "... logarithmic axes", .take = take_log },
+	{ "title", "TEXT", "... the title (default: the model's name)", .take = take_title },
+	{ "size", "WxH", "... in pixels, with --paper in millimetres", .take = take_size },
+	{ "dark", NULL, "... light on dark", .flag = AT(look.as.dark) },
+	{ "paper", NULL, "... for print: a column of 85 mm; .pdf has its fonts inside", .flag = AT(look.as.paper) },
 	{ "psd", "[WINDOW]", "in the place of rows power spectral densities: hann:1024:50 is window:steps:overlap [%]",
-	  take_psd },
+	  .take = take_psd },
 	{ "stats", NULL, "in the place of rows a line for each output: final, mean, rms, least, largest, peak and when",
-	  take_stats },
+	  .flag = AT(stats) },
 	{ "sweep", "FILE.csv", "a run for each row of params; a line each: last values and root mean squares;",
-	  take_sweep },
+	  .take = take_sweep },
 	{ "sweep", "K=A:B:N", "... for N values of K from A to B, with :log in equal ratios; again: every combination",
-	  take_sweep },
+	  .take = take_sweep },
 	{ "fit", "LIST", "params, initial values by which outputs come closest to records: SPEC [T] --fit k,c,x r.csv",
-	  take_fit },
+	  .take = take_fit },
 	{ "sigma", "NAME=X", "... how far samples of this output scatter (default: each as its own values do)",
-	  take_sigma },
+	  .take = take_sigma },
 	{ "profile", NULL, "... in the place of the table the sum of squares as each of them is held elsewhere",
-	  take_profile },
-	{ "peak", NULL, "... and the largest |value| at the ends of steps", take_peak },
-	{ "histories", NULL, "... its picture: every run, at most 8, one on the other", take_histories },
-	{ "jobs", "N", "... on N cores (default: all)", take_jobs },
-	{ "resume", NULL, "... going on where the same sweep was interrupted", take_resume },
+	  .flag = AT(profile) },
+	{ "peak", NULL, "... and the largest |value| at the ends of steps", .flag = AT(peak) },
+	{ "histories", NULL, "... its picture: every run, at most 8, one on the other", .flag = AT(histories) },
+	{ "jobs", "N", "... on N cores (default: all)", .take = take_jobs },
+	{ "resume", NULL, "... going on where the same sweep was interrupted", .flag = AT(resume) },
 	{ "chart", NULL, "error against time of plgen's steps and other solvers, in the folder -o (default: charts)",
-	  take_chart },
-	{ "page", "FILE.html", "in the place of a run one page that runs the model in a browser", take_page },
-	{ "progress", NULL, "how far it is on standard error, also where that is no terminal", take_progress },
-	{ "step", "EXPR", NULL, NULL }, { "scheme", "NAME", NULL, NULL }, { "tolerance", "EXPR", NULL, NULL },
-	{ "real", "TYPE", NULL, NULL }, { "form", "NAME", NULL, NULL }, { "accuracy", "NAME", NULL, NULL },
-	{ "loads", "NAME", NULL, NULL }, { "prefix", "NAME", NULL, NULL }, { "params", "FILE", NULL, NULL },
-	{ "refresh", "N", NULL, NULL }, { "math", "own", NULL, NULL },
-	{ "sensitivity", "LIST", NULL, NULL }, { "anchors", "N", "", NULL }, { "reduce", NULL, NULL, NULL },
-	{ "help", NULL, "", print_usage }, { "version", NULL, "", print_version }
+	  .flag = AT(chart) },
+	{ "page", "FILE.html", "in the place of a run one page that runs the model in a browser", .text = AT(page) },
+	{ "progress", NULL, "how far it is on standard error, also where that is no terminal", .take = take_progress },
+	{ "step", "EXPR", .take = NULL }, { "scheme", "NAME", .take = NULL }, { "tolerance", "EXPR", .take = NULL },
+	{ "real", "TYPE", .take = NULL }, { "form", "NAME", .take = NULL }, { "accuracy", "NAME", .take = NULL },
+	{ "loads", "NAME", .take = NULL }, { "prefix", "NAME", .take = NULL }, { "params", "FILE", .take = NULL },
+	{ "refresh", "N", .take = NULL }, { "math", "own", .take = NULL },
+	{ "sensitivity", "LIST", .take = NULL }, { "anchors", "N", "", .take = NULL }, { "reduce", NULL, .take = NULL },
+	{ "help", NULL, "", .take = print_usage }, { "version", NULL, "", .take = print_version }
 };
 enum { ROWS = sizeof rows / sizeof *rows };
 
@@ -259,7 +249,7 @@ static _Noreturn void print_usage(struct options *o, const char *value)
 			       rows[i].argument ? rows[i].argument : "", rows[i].help);
 	fputs("  passed on to plgen:", stdout);
 	for (int i = 0; i < ROWS; i++)
-		if (!rows[i].take && !rows[i].help)
+		if (!rows[i].help)
 			printf(" --%s", rows[i].name);
 	fputs("\n  --help, --version\n\n"
 	      "PLGEN names the generator (default: beside plrun, then in PATH), CC the compiler (cc), CFLAGS more\n"
@@ -323,11 +313,14 @@ static void take_option(struct words *w, struct options *o)
 		wrong_usage(format("unknown option '%s'", word));
 	const char *given = is_long ? (name[length] ? name + length + 1 : NULL) : name[1] ? name + 1 : NULL;
 	const char *value = value_of(w, row, given);
-	if (row->take) {
+	if (row->take)
 		row->take(o, value);
-		return;
-	}
-	pass_on(o, value ? format("--%s=%s", row->name, value) : format("--%s", row->name));
+	else if (row->text)
+		*(const char **)((char *)o + row->text) = value;
+	else if (row->flag)
+		*(bool *)((char *)o + row->flag) = true;
+	else
+		pass_on(o, value ? format("--%s=%s", row->name, value) : format("--%s", row->name));
 }
 
 static void take_word(struct options *o, const char *word)

@@ -250,7 +250,6 @@ struct machine {
 	int most_ahead;
 	double *param_values;
 };
-struct machine *machine_open(const char *path, const char *name, char **error);     /* NULL: *error */
 struct machine *machine_of(const struct toolchain *t, const struct code *c, char **error);
 void machine_close(struct machine *m);
 double param_value(const struct machine *m, int param, double value);     /* of its own unit, as retune takes it */

@@ -91,7 +91,6 @@ int recurrence_column(const struct recurrences *r, int k);     /* of k in lists 
 tape_ref *recurrence_place(const struct recurrences *r, tape_ref *list, int sequence, int k);
 tape_ref recurrence_staged(const struct recurrences *r, enum stage_kind kind, int a, int b, int k, double exponent);
 tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tape_ref ref);
-struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k);
 struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k);
 tape_ref recurrence_chain(struct tape *t, const struct list *list);
 struct multiplier recurrence_number_at(const struct recurrences *r, int k);    /* k */

@@ -54,7 +54,7 @@ tape_ref recurrence_scaled(const struct recurrences *r, struct multiplier f, tap
 }
 
 /* factor[k], of all k >= 1 the same or in a table */
-struct multiplier recurrence_factor_among(const struct recurrences *r, const double *factor, int k)
+static struct multiplier factor_among(const struct recurrences *r, const double *factor, int k)
 {
 	const int order = r->x->order;
 	bool same = true;
@@ -70,7 +70,7 @@ struct multiplier recurrence_factor_among(const struct recurrences *r, const dou
 
 struct multiplier recurrence_factor_at(const struct recurrences *r, const struct sequence_term *term, int k)
 {
-	return term->factor ? recurrence_factor_among(r, term->factor, k) : plain(1);
+	return term->factor ? factor_among(r, term->factor, k) : plain(1);
 }
 
 /* ---- sums ---- */
@@ -106,5 +106,5 @@ struct multiplier recurrence_part_at(struct recurrences *r, int k)
 	SCRATCH double *part = ARRAY(double, r->x->order + 1);
 	for (int i = 0; i <= r->x->order; i++)
 		part[i] = recurrence_rounded(1.0 / (i + 1));
-	return recurrence_factor_among(r, part, k);
+	return factor_among(r, part, k);
 }
