@@ -6,6 +6,7 @@
 set -eu
 plgen=$(realpath "$1")
 source=$(realpath "$2")
+PLRT=${PLRT:+$(realpath "$PLRT")}
 work=$(mktemp -d "${TMPDIR:-/tmp}/cost.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"
