@@ -19,7 +19,6 @@ void check_force(const struct node *node, const struct form *force, mpq_srcptr f
 
 bool holds_friction(const struct building *b);              /* somewhere in the equations */
 const struct atom *friction_in(const struct form *form, bool *seen); /* NULL: there is none */
-_Noreturn void report_no_equation(const struct atom *friction); /* which has this friction of an output */
 _Noreturn void report_no_friction(const struct building *b); /* why a scheme cannot treat it */
 /* What is held exceeds the force of what slides by this, where the velocity is 0 */
 struct form *less_in_velocity(const struct form *rest, const struct form *force, const struct form *velocity);

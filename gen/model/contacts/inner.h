@@ -5,6 +5,10 @@
 
 #include "friction.h"
 
+/* ---- friction.c ---- */
+
+_Noreturn void report_no_equation(const struct atom *friction); /* which has this friction of an output */
+
 /* ---- holds.c: states of a region that follow from the others ---- */
 
 const struct form *free_of_holds(const struct holding *h, const struct form *form);     /* without what is held */
