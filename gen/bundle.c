@@ -157,7 +157,7 @@ static void use_words(struct runtime *r, const char *text, enum side side)
 	}
 }
 
-/* What declares nothing tells what the arithmetic needs: of plrt.h always, of another file where that is used */
+/* Pieces that declare nothing check the arithmetic: those of plrt.h always, those of a file that is used */
 static void use_checks(struct runtime *r)
 {
 	for (bool more = true; more;) {

@@ -280,8 +280,8 @@ static real most_of(const column *w)
     return most;
 }
 
-/* Whether what slips is driven to this side: friction that holds more than it bears when it slides may be so by less
- * than would hold it. */
+/* Whether a slipping contact is driven to this side: where the static limit is above the sliding force, a force below
+ * the limit may do so. */
 static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
 {
     const column velocity = watched(m, at, m->hold[hold].velocity);

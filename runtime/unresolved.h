@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT-0 */
-/* unresolved.h: how far a polynomial follows what its coefficients may not show, functions that are all but constant
- * over most of their range; part of what a model's file includes for its steps.  Of the argument of each its polynomial
- * bounds where it goes: over one length it may come nearer to where the function bends by so much as the order
- * resolves, and then the last terms tell what follows. */
+/* unresolved.h: the time over which a Taylor polynomial follows functions that are almost constant over most of their
+ * range, which its coefficients may not show; part of what a model's file includes for its steps.  The polynomial of a
+ * function's argument bounds where the argument goes: in that time it may come nearer to where the function bends by no
+ * more than the order resolves, and then the last terms show what follows. */
 #include "numbers.h"
 
 #ifndef PLRT_UNRESOLVED_H
@@ -20,7 +20,7 @@ enum { PL_UNRESOLVED_RISE, PL_UNRESOLVED_SPREAD, PL_UNRESOLVED_TURN, PL_UNRESOLV
 #define PL_GONE (-60)
 #endif
 
-/* No more than this a polynomial of this degree moves over `size`; its coefficients stand `stride` apart. */
+/* A bound on how far a polynomial of this degree moves over `size`; its coefficients stand `stride` apart. */
 static real PL(moves)(const real *c, int stride, int degree, real size)
 {
     real sum = 0;
@@ -31,8 +31,8 @@ static real PL(moves)(const real *c, int stride, int degree, real size)
     return sum;
 }
 
-/* Its bounds over `size` from its start: those of a quartic by its Bezier points, beside the most that later terms
- * add */
+/* Bounds of its values over `size` from its start: of a quartic by its Bezier points, and what later terms add at
+ * most */
 static void PL(bounds)(const real *c, int stride, int degree, real size, real bound[2])
 {
     real p[5] = {0, 0, 0, 0, 0}, b[4], power = 1, rest = 0;

@@ -223,7 +223,7 @@ static struct form *derive_atom(struct differentiation *d, const struct atom *a)
 	}
 }
 
-/* What atoms there were at the start is derived once; those made on the way are not looked at. */
+/* Atoms that exist at the start are differentiated once; those made on the way are not. */
 static struct form *known_derivative(struct differentiation *d, const struct atom *a)
 {
 	if (a->index >= d->count)
@@ -388,7 +388,7 @@ static bool shares_terms(const struct form *a, const struct form *b)
 	return a == b || (a->terms && a->term == b->term);
 }
 
-/* Nobody else's terms: the point frees what it knows. */
+/* These terms belong to the point, which frees them. */
 static struct form *place_atom(struct point *p, const struct atom *a)
 {
 	if (a->kind == ATOM_PARAM)
@@ -439,7 +439,7 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 	return p->known[index];
 }
 
-/* Not to be changed: it may share the terms of the form */
+/* The result must not be changed: it may share the terms of the form. */
 static struct form *place_form(struct point *p, const struct form *form)
 {
 	if (is_constant(form))

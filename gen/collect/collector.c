@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* What the collector and all that it is made of share: what is said of terms that cannot be treated, functions of
- * constants. */
+/* Shared by the files of the collector: messages about terms that cannot be treated, and functions of constants. */
 #include "collect/collect.h"
 
 static bool holds_acceleration(const struct node *node)

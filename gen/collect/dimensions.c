@@ -105,7 +105,7 @@ static bool is_same_place(const struct node *a, const struct node *b)
 	return a && b && a->symbol == b->symbol && a->component == b->component;
 }
 
-/* What acts on one coordinate is of one dimension; what acts between two moves alike on both. */
+/* Forces on a coordinate have one dimension; an element between two acts on both with one dimension. */
 static void add_elements(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
@@ -140,7 +140,7 @@ static void add_elements(struct dimensions *w)
 		}
 }
 
-/* Energies are alike, and a force at a point times its place is one; what is dissipated is one over time. */
+/* Energies have one dimension, as has a force at a point times its place; dissipated power is that over time. */
 static void add_energies(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
@@ -408,7 +408,7 @@ static int reference_of(const struct group *group)
 	return best;
 }
 
-/* What is known is compared first: nothing follows from a group that contradicts itself. */
+/* Known terms are compared first: nothing follows from a group that contradicts itself. */
 static void solve_group(struct dimensions *w, struct group *group)
 {
 	for (int i = 0; i < group->terms; i++)
@@ -433,7 +433,7 @@ static int inner_first(const void *left, const void *right)
 	return a->depth != b->depth ? b->depth - a->depth : a->place - b->place;
 }
 
-/* In a statement what stands inside comes before what it stands in. */
+/* Within a statement inner groups come before those that contain them. */
 static void sort_groups(struct dimensions *w)
 {
 	for (int first = 0, last; first < w->groups; first = last) {

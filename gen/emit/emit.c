@@ -189,7 +189,7 @@ static void emit_motion_of(const struct emitter *e, bool rhs)
 	emit_run(e);
 }
 
-/* What is there of some models only: states between steps, many steps at once, the ways to check it */
+/* Parts that only some models have: states between steps, many steps at once, the ways to check it */
 static void emit_further_functions(const struct emitter *e, bool rhs)
 {
 	emit_block_list(e);

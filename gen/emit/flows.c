@@ -115,7 +115,7 @@ static const struct printers with_remainder = {
 	.at = emit_at
 };
 
-/* ---- cut: the same, from crossing to crossing ---- */
+/* ---- event-split: the same, from crossing to crossing ---- */
 
 static void emit_expansion_constants(const struct emitter *e)
 {

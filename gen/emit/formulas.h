@@ -41,7 +41,7 @@ void emit_remainder(const struct emitter *e);                      /* and of a s
 
 const char *selection_call(const struct emitter *e);              /* of a schedule: which operator serves now */
 
-/* ---- actions.c: the step of a scheme that leaves something over ---- */
+/* ---- actions.c: the step of a scheme with a remainder ---- */
 
 void emit_remainder_step(const struct emitter *e);
 void emit_samples(const struct emitter *e);                       /* start, slope: what remainders read of ramps */

@@ -392,7 +392,7 @@ static void derive_model(struct building *b)
 		statement_guard(collect_derived, &(struct derivation){ b, k });
 }
 
-/* Where a scheme leaves something over, the instance's own params stand in it: collected anew, with them as atoms. Of
+/* Where a scheme has a remainder, the instance's own params stand in it: collected anew, with them as atoms. Of
  * regions they move breakpoints and add forces, as held inputs do. */
 static void collect_with_params(struct building *b)
 {

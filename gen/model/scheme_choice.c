@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Which scheme the equations allow: exact, exact in regions, or one that leaves something over. */
+/* Which scheme the equations allow: exact, exact in regions, or one with a remainder. */
 #include "building.h"
 #include "capability.h"
 #include "state_mass.h"

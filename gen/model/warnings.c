@@ -44,7 +44,7 @@ static void check_predictor(struct jacobian *j)
 	double h = nearest_double(model->h);
 	if (fastest * h > limit)
 		say_warning(scheme_place(b),
-			    format("a step up to %.3g s, or a scheme of the etd family, whose operator bears the "
+			    format("a step up to %.3g s, or a scheme of the etd family, whose operator has the "
 				   "stiffness",
 				   limit / fastest),
 			    "%s predicts its nodes explicitly, up to |lambda| h of about %.1f: here |lambda| = %.4g "

@@ -41,7 +41,7 @@ struct group {
 	int inputs, *input;         /* and of inputs */
 	bool tuned;                 /* tunable params touch its factors: the instance has them */
 };
-/* A step of a scheme that leaves something over is a list of actions on vectors: stages are states (0: the state
+/* A step of a scheme with a remainder is a list of actions on vectors: stages are states (0: the state
  * itself), lefts are remainders. */
 enum { STAGE_STATE = 0, NONE = -1, SUM_PHI_WEIGHTS = 4 };
 struct action {
@@ -58,7 +58,7 @@ struct action {
 	const char *note;           /* a = F y + q1 r0 */
 };
 struct program {
-	int assignments;            /* of a scheme that leaves nothing over */
+	int assignments;            /* of a scheme without remainder */
 	struct assignment *assignment;
 	/* each assignment reads what those before it have left; else all read the old state */
 	bool in_order;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The highest derivatives of the coordinates and their Jacobian as C: what depends on time alone once for a time, the
- * rest for a state. */
+/* The highest derivatives of the coordinates and their Jacobian as C: terms of time alone are computed once for each
+ * time, the others for each state. */
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "model/reads.h"
@@ -152,7 +152,7 @@ void emit_state_table(const struct emitter *e)
 	emit_integers(e, "short", "coord_of", e->system->states, e->system->coord);
 }
 
-/* ---- what is known of a time before the state is ---- */
+/* ---- numbers that depend on time alone ---- */
 
 enum known_kind { KNOWN_DRIVEN, KNOWN_TIME, KNOWN_WHEN, KNOWN_SLOT, KNOWN_LOAD, KNOWN_INPUT, KNOWN_PARAM };
 struct known { enum known_kind kind; int index, part; }; /* column of a load, order of an input's derivative */
@@ -473,7 +473,7 @@ static void emit_part(const struct emitter *e, const struct reads *r, enum motio
 		[THE_FORCES] = { "The highest derivatives at state y", "forces", "" },
 		[THE_SLOPES_TOO] = { "The highest derivatives at state y, and their Jacobian where it is not 0",
 				     "linearize", ", double slope[]" },
-		[THE_SWITCHING] = { "The expressions that choose formulas, at state y, and the size of what they are "
+		[THE_SWITCHING] = { "The switching functions at state y, and the size of what they are "
 				      "summed from", "watch", ", double excess[]" },
 		[THE_ARGUMENTS] = { "The arguments of functions that polynomials may not show, at state y", "trace",
 				    "" }

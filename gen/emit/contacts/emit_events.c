@@ -39,7 +39,7 @@ static void emit_watches(const struct emitter *e, const char *name, int first)
 	int *column = ARRAY(int, (size_t)c->watches);
 	for (int i = 0; i < c->watches; i++)
 		column[i] = first == NONE ? c->watch[i].column : first + i;
-	say(e, "\n/* What the search of events watches beside expressions: the column of each */\n");
+	say(e, "\n/* What the search of events watches beside switching functions: the column of each */\n");
 	emit_int_list(e, name, c->watches, column);
 }
 
@@ -80,7 +80,7 @@ static void emit_holds(const struct emitter *e)
 				   watch_or_none(h->pull[0]), watch_or_none(h->pull[1]), watch_or_none(h->impact) };
 		memcpy(row + 6 * i, of, sizeof of);
 	}
-	say(e, "\n/* What is held: expression, interval; watches: its velocity, what lets it go down, up; impact */\n");
+	say(e, "\n/* Constraints: switching function, interval; watches: velocity, what ends it down, up; impact */\n");
 	emit_integer_rows(e, "pl_hold", format("event_hold[%d]", rows), rows, 6, c->holds ? row : none);
 	emit_rows(e, "event_back", "Of each: what is taken from the states for a velocity of 1", c->holds, 0);
 	emit_row_watches(e, "event_back_watch", c->holds, 0);
@@ -89,8 +89,8 @@ static void emit_holds(const struct emitter *e)
 static void emit_series_impacts(const struct emitter *e)
 {
 	const struct contacts *c = contacts(e);
-	say(e, "\n/* Impacts: expression, breakpoint, upward, hold; watches: guard, speed; assignments: its own, "
-	       "without restitution, how many; restitution; of the expression for a guard of 1 */\n"
+	say(e, "\n/* Impacts: switching function, breakpoint, upward, hold; watches: guard, speed; assignments: its "
+	       "own, without restitution, how many; restitution; of that function for a guard of 1 */\n"
 	       "static const pl_event_impact $n_event_impacts[%d] = {\n",
 		       c->series_impacts > 0 ? c->series_impacts : 1);
 	for (int i = 0; i < c->series_impacts; i++) {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* The step of a scheme that leaves something over: its program's actions on vectors, unrolled or as loops. */
+/* The step of a scheme with a remainder: its program's actions on vectors, unrolled or as loops. */
 #include "inner.h"
 #include "emit/steps.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Schemes with a remainder from crossing to crossing: what the runtime's event_split.h, which the model's file
- * includes, is of the model, and a whole step by the scheme's own tables. */
+/* Schemes with a remainder from crossing to crossing: what the model's file defines for event_split.h of the runtime,
+ * and a full step by the scheme's own tables. */
 #include "inner.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"

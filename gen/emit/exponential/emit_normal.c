@@ -291,7 +291,7 @@ static int turns_within(const struct emitter *e)
 
 /* ---- the whole ---- */
 
-/* Those of a step by collocation, part of one that is cut */
+/* Tables of a step by collocation that is part of an event-split step */
 void emit_mode_sizes(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);

@@ -20,7 +20,7 @@ void emit_forces(const struct emitter *e);                        /* NAME_mode_f
 
 void emit_forces_on_modes(const struct emitter *e);               /* NAME_on_modes */
 
-/* ---- emit_normal.c: a step by collocation, part of one that is cut ---- */
+/* ---- emit_normal.c: a step by collocation, part of an event-split step ---- */
 
 void emit_mode_tables(const struct emitter *e);
 void emit_mode_sizes(const struct emitter *e);
@@ -37,7 +37,7 @@ void emit_operands(const struct emitter *e);                      /* declares lo
 void emit_flow_loop(const struct emitter *e, int t, bool from_rest, const char *target, const char *margin);
 void emit_sum_loop(const struct emitter *e, const struct action *a);
 
-/* ---- actions.c: the step of a scheme that leaves something over ---- */
+/* ---- actions.c: the step of a scheme with a remainder ---- */
 
 void emit_actions_of_step(const struct emitter *e);                /* its body, without time */
 void emit_predictor(const struct emitter *e);                      /* NAME_predict: states at nodes */

@@ -77,7 +77,7 @@ void emit_switching_tables(const struct emitter *e)
 		for (int k = 0; k < breaks[i]; k++)
 			*to++ = round_rational(rising[k]);
 	}
-	say(e, "\n/* Of the expressions that choose formulas: breakpoints, in a series the column of each */\n");
+	say(e, "\n/* Of the switching functions: breakpoints, in a series the column of each */\n");
 	emit_int_list(e, "breaks", x->functions, breaks);
 	emit_array(e, NULL, "breakpoint", 1, &all, at, NULL);
 	if (!e->step->taylor.expansion)

@@ -62,7 +62,7 @@ struct friction {                   /* in one segment of time */
 	bool low;                   /* S may fall below F, and counts as F there */
 };
 struct massless_slider { const struct atom *atom; const struct form *slider_force; };
-/* Of FN_SLIDE: friction of what has no mass, by what it bears */
+/* Of FN_SLIDE: friction of a massless slider, by the force through it */
 struct slider {
 	const struct atom *atom;
 	bool negative;              /* F may fall below 0 */

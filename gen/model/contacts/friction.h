@@ -47,7 +47,7 @@ void resolve_sliders(struct building *b, struct segment_equations *segment_equat
 /* Whether a guard of its own stands where the interval of a switching function ends: what lets go a slider without mass
  * */
 bool is_released(const struct region *region, int function, bool upward);
-struct form *borne_form(const struct building *b, const struct form *form); /* of an output: what friction bears */
+struct form *borne_form(const struct building *b, const struct form *form); /* of an output: transmitted forces */
 bool is_repeated_slider(const struct switching *s, int index);      /* it stands there for an earlier segment too */
 /* Where it slides: as many as its force differs in regions */
 int slides_of(const struct switching *s, int index, const struct slide ***slide);

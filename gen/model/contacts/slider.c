@@ -82,7 +82,7 @@ static struct form *scaled_form(const struct form *form, mpq_srcptr by, bool inv
 	return form_scale(form, factor);
 }
 
-/* In other equations the friction is what it bears, and in outputs. */
+/* In other equations and in outputs the friction is the force through the slider. */
 static void put_in_others(const struct slider_row *r, const struct form *slider_force)
 {
 	struct basis basis = { .kind = BASIS_ATOM, .index = r->atom->index, .atom = r->atom };
@@ -105,7 +105,7 @@ static _Noreturn void report_drives(const struct node *node)
 	      "this friction drives what slides instead of holding it");
 }
 
-/* What it bears becomes less as it slides. */
+/* The force through the slider becomes less as it slides. */
 static void check_borne(const struct slider_row *r, const struct form *slider_force)
 {
 	struct basis place = { .kind = BASIS_COORD, .index = r->coord };
@@ -237,7 +237,7 @@ static void resolve_all(void *context)
 		for (int k = 0; k < s->residual[i].form->terms; k++) {
 			const struct atom *a = s->residual[i].form->term[k].basis.atom;
 			if (is_friction(a) && has_rate(b, a->operand[0], -1))
-				error(a->node->at, "the equation of what has no mass says what its friction bears",
+				error(a->node->at, "the equation of a massless slider gives the force through it",
 				      "no equation gives the force of this friction");
 		}
 }

@@ -113,7 +113,7 @@ void hold_sliders(struct holding *h, const struct switching *s)
 		int at = velocity_term(h->b, place, true);
 		if (at < 0)
 			error(slider->atom->node->at, "a spring between it and what moves, k*(x - z)",
-			      "what this friction bears does not depend on where it is");
+			      "the force through this slider does not depend on its place");
 		hold_state(h, place, at);
 	}
 }

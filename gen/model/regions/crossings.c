@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Whether a scheme that leaves something over goes from crossing to crossing: each comparison of the remainder is
+/* Whether a scheme with a remainder goes from crossing to crossing: each comparison of the remainder is
  * of a switching function of the state with a breakpoint, or of times, the formulas on both sides have derivatives
  * there, and the tables of a part of a step, which the target makes, are no larger than those of tunable models. Else
  * it steps across, and is of the order that is left there. */

@@ -302,7 +302,7 @@ static bool exceeds(struct looking *l, const struct node *node, const struct for
 	refuse_force(node, form);
 	int e = function_here(l, node, form, factor, slide->at[side]);
 	if (e < 0)
-		error(node->at, "a force of its own, F", "what this friction bears and what it holds are one");
+		error(node->at, "a force of its own, F", "the force through this slider equals its limit");
 	slide->function[side] = e;
 	slide->upward[side] = mpq_sgn(factor) > 0;
 	return is_above(l, e, slide->at[side]) == slide->upward[side];

@@ -101,7 +101,7 @@ static double largest_load(const struct forcing_of_column *p, double end)
 	return fmax(pow(t, p->power) * exp(p->a * t), p->power ? 0 : 1);
 }
 
-/* What the step leaves out is added where the state is read: it starts less that, and the output reads it. */
+/* A particular solution that is subtracted: the state starts less it, and outputs add it. */
 static void keep_forced(const struct step *step, struct step_map *k)
 {
 	for (int i = 0; i < k->n; i++)

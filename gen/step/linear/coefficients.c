@@ -46,7 +46,7 @@ static struct exponential *exponential_at(const struct filling *f, mpq_srcptr ta
 	return NULL;
 }
 
-/* Where half the time is asked for too, the square of what is found there */
+/* The square of e^{A tau/2}, where half the time is requested too */
 static struct taylor *taylor_at(const struct filling *f, mpq_srcptr tau)
 {
 	struct exponential *here = exponential_at(f, tau);
@@ -452,7 +452,7 @@ static void plan_exponentials(struct filling *f, int count, const struct wanted 
 	}
 }
 
-/* A series of a forcing term that turns so often in a step would not end, and residues are slow beyond a few states. */
+/* A series of a forcing term that oscillates so often in a step has no end; residues are slow beyond a few states. */
 static void check_forcings(const struct filling *f)
 {
 	for (int l = 0; l < f->system->loads; l++) {
@@ -523,7 +523,7 @@ static void scatter_square(const struct block *block, int n, const struct coeffi
 			full[block->coord[i] * n + block->coord[j]] = part[i * m + j];
 }
 
-/* The block's rows and columns to their places in the whole; between blocks everything stays exactly 0. */
+/* Puts rows and columns of a block to their places in the full matrix; entries between blocks stay exactly 0. */
 static void scatter(const struct block *block, const struct table *part, int segments, struct table *table)
 {
 	for (int i = 0; i < part->states; i++) {

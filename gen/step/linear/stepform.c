@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* A step that leaves nothing over, y+ = Phi y + loads + inputs, as a program in one of several forms. In exact
+/* A step without remainder, y+ = Phi y + loads + inputs, as a program in one of several forms. In exact
  * arithmetic all are the same map; what differs is what rounding does to them over many steps.
  *
  *   direct            y = Phi y. Where |pole| h is small, Phi - I loses the digits that the 1 takes.
