@@ -18,10 +18,6 @@ void hold_state(struct holding *h, const struct form *v, int at);   /* v = 0, so
 int velocity_term(const struct building *b, const struct form *form, bool first_order);
 void add_release(struct region *region, int function, bool upward, struct form *form);
 
-/* ---- friction.c ---- */
-
-_Noreturn void report_no_equation(const struct atom *friction); /* which has this friction of an output */
-
 /* ---- slider.c: friction of what has no mass ---- */
 
 /* in a region: the equations of what slides, where that ends, and the places that follow from the force through it */
