@@ -6,9 +6,10 @@
  *     PL_OPENCL, PL_CUDA         1: for that; else for OpenMP
  *     PL_STEPPED, PL_OUTPUTS     numbers of an instance that a step changes, outputs
  *     PL_SHARED, PL_LANES        numbers of a step that instances share; that params decide, of an instance
+ *     PL_OVER, PL_STATES         steps of a series of fixed order, series_lanes.h, and states; 0: a linear step
  *     pl_lanes                   a number, of which there is one in each work item
  *
- * and behind it PL(lanes_step) and PL(lanes_out), as batch.h has them. */
+ * and behind it PL(lanes_step), or PL(lanes_pass), and PL(lanes_out), as batch.h has them. */
 #include "numbers.h"
 
 #if PL_OPENCL
@@ -38,7 +39,62 @@ PL_OWN_FUNCTION pl_lanes pl_lanes_accumulate(pl_lanes sum, pl_lanes term, pl_lan
     return result;
 }
 
+#if PL_OVER > 0
+/* As those of lanes.h, of the one lane */
+typedef int pl_lanes_truth;
+PL_OWN_FUNCTION int pl_lanes_below(pl_lanes a, pl_lanes b)
+{
+    return a < b;
+}
+PL_OWN_FUNCTION int pl_lanes_equal(pl_lanes a, pl_lanes b)
+{
+    return a <= b && a >= b;
+}
+PL_OWN_FUNCTION pl_lanes pl_lanes_choose(int which, pl_lanes a, pl_lanes b)
+{
+    return which ? a : b;
+}
+#if PL_OVER > 1
+PL_OWN_FUNCTION int pl_lanes_both(int a, int b)
+{
+    return a & b;
+}
+PL_OWN_FUNCTION int pl_lanes_either(int a, int b)
+{
+    return a | b;
+}
+PL_OWN_FUNCTION int pl_lanes_flags(int a)
+{
+    return a;
+}
+#endif
+#define PL_LANES_UNROLL
+#if PL_OVER > 1
+PL_OWN_FUNCTION pl_lanes_truth PL(lanes_pass)(pl_lanes *y, const pl_lanes *factor, const real *now, int seen);
+#define PL_A_STEP(y, factor, now) PL(lanes_pass)(y, factor, now, 1)
+#else
+PL_OWN_FUNCTION pl_lanes_truth PL(lanes_step)(pl_lanes *y, const pl_lanes *factor, const real *now);
+#define PL_A_STEP(y, factor, now) PL(lanes_step)(y, factor, now)
+#endif
+
+/* A step; what it leaves of an instance that is not finite is no number from there on. */
+PL_OWN_FUNCTION void PL(kernel_step)(pl_lanes *y, const pl_lanes *factor, const real *now)
+{
+    int i;
+    if (!PL_A_STEP(y, factor, now)) {
+        for (i = 0; i < PL_STATES; i++) {
+            y[i] = (y[i] - y[i]) / (y[i] - y[i]);
+        }
+    }
+}
+#undef PL_A_STEP
+#else
 PL_OWN_FUNCTION void PL(lanes_step)(pl_lanes *y, const pl_lanes *factor, const real *now);
+PL_OWN_FUNCTION void PL(kernel_step)(pl_lanes *y, const pl_lanes *factor, const real *now)
+{
+    PL(lanes_step)(y, factor, now);
+}
+#endif
 PL_OWN_FUNCTION void PL(lanes_out)(const pl_lanes *y, const pl_lanes *factor, const real *now, pl_lanes *out);
 
 /* n steps of instance j; most, sum: of each output the largest size and the sum at their ends */
@@ -65,7 +121,7 @@ PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_
         for (i = 0; i < PL_SHARED; i++) {
             shared[i] = now[k * PL_SHARED + (PL_SIZE_TYPE)i];
         }
-        PL(lanes_step)(state, factor, shared);
+        PL(kernel_step)(state, factor, shared);
         PL(lanes_out)(state, factor, shared, out);
         for (i = 0; i < PL_OUTPUTS; i++) {
             const real size = out[i] < 0 ? -out[i] : out[i];

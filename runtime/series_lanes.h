@@ -23,6 +23,15 @@ PL_LANES_INLINE pl_lanes_truth PL(lanes_finite)(const pl_lanes *y)
     return pl_lanes_equal(sum, pl_lanes_all(0));
 }
 
+PL_LANES_INLINE void PL(lanes_copy)(pl_lanes *to, const pl_lanes *from, const int count)
+{
+    int i;
+    PL_LANES_UNROLL
+    for (i = 0; i < count; i++) {
+        to[i] = from[i];
+    }
+}
+
 PL_LANES_INLINE void PL(lanes_take_over)(pl_lanes *to, pl_lanes_truth where, const pl_lanes *from, const int count)
 {
     int i;
@@ -50,7 +59,7 @@ PL_LANES_INLINE pl_lanes_truth PL(lanes_renew)(pl_lanes *y, const pl_lanes *fact
     if (pl_lanes_flags(fresh) == 0) {
         return goes_on;
     }
-    memcpy(end + PL_STATES, y + PL_STATES, PL_STATES * sizeof *y);
+    PL(lanes_copy)(end + PL_STATES, y + PL_STATES, PL_STATES);
     PL(lanes_expand)(y, factor, now, (pl_lanes (*)[PL_STATES])(end + 2 * PL_STATES));
     PL(lanes_total)((pl_lanes (*)[PL_STATES])(end + 2 * PL_STATES), y, end, end + PL_STATES);
     finite = PL(lanes_finite)(end);
@@ -112,7 +121,7 @@ PL_LANES_INLINE pl_lanes_truth PL(lanes_step)(pl_lanes *y, const pl_lanes *facto
 {
     pl_lanes c[PL_ORDER + 1][PL_STATES], end[2 * PL_STATES];
     pl_lanes_truth finite;
-    memcpy(end + PL_STATES, y + PL_STATES, PL_STATES * sizeof *y);
+    PL(lanes_copy)(end + PL_STATES, y + PL_STATES, PL_STATES);
     PL(lanes_expand)(y, factor, now, c);
     PL(lanes_total)(c, y, end, end + PL_STATES);
     finite = PL(lanes_finite)(end);

@@ -129,7 +129,7 @@ void emit_batch_declarations(const struct emitter *e)
 	if (e->step->no.lanes || leaves_lanes(e))
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
-	if (!e->step->no.lanes && !leaves_lanes(e) && !has_peaks(e))
+	if (!e->step->no.lanes && !has_regions(e) && !has_peaks(e))
 		say(e, "/* For $n_kernel on a device (plgen --target): now[n + 1][$N_BATCH_SHARED] receives what all\n"
 		       " * share in n steps%s; time goes on. */\n"
 		       "enum { $N_BATCH_SHARED = %d };\n"
@@ -247,10 +247,10 @@ static void emit_include(const struct batch *b)
 		   { "OUTPUTS", e->model->outputs },
 		   { "EVENTS", leaves_lanes(e) },
 		   { "ORDER", has_series(e) ? own_expansion(e)->order : 0 },
-		   { "OVER", !has_series(e) ? 0 : spans_steps(e) ? e->model->truncation.over : 1 },
+		   { "OVER", steps_of_series(e) },
 		   { "TUNED", e->step->is.tuned },
 		   { "OUT_ALONE", b->out_alone },
-		   { "SHARES", !leaves_lanes(e) && !has_peaks(e) },
+		   { "SHARES", !has_regions(e) && !has_peaks(e) },
 		   { "LANES_PAY", !has_regions(e) ? 0 : has_events(e->model->switching) ? 3 : 2 },
 		   { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },

@@ -30,6 +30,9 @@ void emit_kernel(const struct emitter *e, const char *target)
 	struct emitter on_device = *e;
 	on_device.device = opencl ? "__constant" : cuda ? "static __device__ const" : "static const";
 	struct batch b = plan_batch(&on_device);
+	if (has_series(e) && (b.out_alone || calls_functions(b.step) || calls_functions(b.out)))
+		error(e->model->spec->name_at, "--batch steps any model", "--target %s: functions and outputs that are "
+		      "not linear have other bits on a device", target);
 	say(e, "\n"
 	       "/* For %s: a work item steps one instance. The host is the C of plgen --batch: it has the arrays, and\n"
 	       " * what all share comes from $n_batch_share. Bits are those of $n_batch where products are not\n"
@@ -39,11 +42,15 @@ void emit_kernel(const struct emitter *e, const char *target)
 	    opencl ? "OpenCL" : cuda ? "CUDA" : "OpenMP", cuda ? " (nvcc -fmad=false)" : "",
 	    opencl && !e->model->request.single ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n" : "",
 	    opencl ? words_of_opencl : cuda ? words_of_cuda : words_of_openmp);
-	emit_sizes(e, "kernel.h", { "STEPPED", batch_stepped_rows(e) }, { "OUTPUTS", e->model->outputs },
+	emit_sizes(e, "kernel.h", { "STATES", e->system->states }, { "OVER", steps_of_series(e) },
+		   { "STEPPED", batch_stepped_rows(e) }, { "OUTPUTS", e->model->outputs },
 		   { "SHARED", b.shared }, { "LANES", b.lanes }, { "OPENCL", opencl }, { "CUDA", cuda });
 	say(e, "#include \"kernel.h\"\n");
 	say(e, "%s", openmp ? "#pragma omp declare target\n" : "");
-	emit_lanes_step(&b);
+	if (has_series(e))
+		emit_kernel_of_series(&b);
+	else
+		emit_lanes_step(&b);
 	emit_lanes_out(&b);
 	say(e, "%s", openmp ? "#pragma omp end declare target\n" : "");
 }

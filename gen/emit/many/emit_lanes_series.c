@@ -47,6 +47,14 @@ static void emit_function(const struct emitter *e, const char *name, bool of_two
 	    of_two ? "    memcpy(y, &second, sizeof second);\n" : "", name, of_two ? ", y[i]" : "");
 }
 
+bool calls_functions(const struct tape *t)
+{
+	bool any = calls(t, TAPE_POWER, 0) || calls(t, TAPE_ATAN2, 0);
+	for (int f = FN_NONE + 1; f < FN_ATAN2; f++)
+		any = any || calls(t, TAPE_CALL, f);
+	return any;
+}
+
 /* Functions of <math.h>, of each lane by itself: their bits are those of one instance */
 static void emit_functions(const struct emitter *e, const struct tape *t)
 {
@@ -57,6 +65,11 @@ static void emit_functions(const struct emitter *e, const struct tape *t)
 		emit_function(e, "pow", true);
 	if (calls(t, TAPE_ATAN2, 0))
 		emit_function(e, "atan2", true);
+}
+
+int steps_of_series(const struct emitter *e)
+{
+	return !has_series(e) ? 0 : spans_steps(e) ? e->model->truncation.over : 1;
 }
 
 void emit_lanes_of_series(struct batch *b)
@@ -70,6 +83,15 @@ void emit_lanes_of_series(struct batch *b)
 	close_function(e, "now factor");
 	emit_lanes_total(e);
 	emit_sizes(e, "series_lanes.h", { "STATES", e->system->states }, { "ORDER", own_expansion(e)->order },
-		   { "OVER", spans_steps(e) ? e->model->truncation.over : 1 });
+		   { "OVER", steps_of_series(e) });
 	say(e, "#include \"series_lanes.h\"\n");
+}
+
+void emit_kernel_of_series(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	say(e, "enum { $N_STATES = %d };\n", e->system->states);
+	if (steps_of_series(e) > 1)
+		emit_over_table(e);
+	emit_lanes_of_series(b);
 }

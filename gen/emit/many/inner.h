@@ -30,6 +30,9 @@ void emit_over_lanes(struct batch *b, const struct tape *t, int from, shared_tex
 shared_text shared_of_series;
 void emit_shared_of_series(const struct batch *b);
 void emit_lanes_of_series(struct batch *b);
+void emit_kernel_of_series(struct batch *b);
+int  steps_of_series(const struct emitter *e);  /* that one is over; 0: there is none */
+bool calls_functions(const struct tape *t);
 struct batch plan_batch(const struct emitter *e);
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */

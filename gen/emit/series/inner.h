@@ -41,6 +41,5 @@ void emit_reach_sizes(const struct emitter *e);                  /* what reach.h
 void emit_over_members(const struct emitter *e);
 /* s->y: the state `theta` after the start, by Horner's rule; what rounding took at the start is in `rest`, with %d */
 void emit_value(const struct emitter *e, const char *theta, gain_term *term, const char *rest, const char *indent);
-void emit_over_table(const struct emitter *e);                   /* NAME_part_of */
 
 #endif

@@ -110,5 +110,6 @@ void emit_collocation_place(const struct emitter *e);
 void emit_collocation_members(const struct emitter *e);
 void emit_collocation_step(const struct emitter *e);
 void emit_collocation_at(const struct emitter *e);
+void emit_over_table(const struct emitter *e);                   /* NAME_part_of, of a series over several steps */
 
 #endif
