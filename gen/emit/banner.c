@@ -88,7 +88,7 @@ static void banner_relative(const struct emitter *e)
 	say(e, " * Rigid-body modes are kept apart from relative coordinates: %s%s.\n", relative_text(e->model),
 	    centre);
 	if (*centre)
-		say(e, " * Only loads and inputs act on a centre; nothing that rounds inside changes its velocity.\n");
+		say(e, " * Only loads and inputs act on a centre; rounding of inner forces does not change it.\n");
 }
 
 /* What modes cost, and what their arithmetic loses */
