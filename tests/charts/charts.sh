@@ -85,10 +85,10 @@ result $? "pages: every picture with its text and caption, every table, nothing 
 mkdir again
 for name in quality_check convergence hard_raw; do
     case $name in
-        quality_check) "$build/bench/charts/integrators" --quick again >"$log" 2>&1 ;;
-        *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" again >"$log" 2>&1 ;;
+        quality_check) "$build/bench/charts/integrators" --quick again >progress 2>&1 ;;
+        *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" again >progress 2>&1 ;;
     esac
-    cmp "$out/$name.csv" "again/$name.csv" >>"$log" 2>&1
+    diff "$out/$name.csv" "again/$name.csv" >"$log" 2>&1
     result $? "$name.csv: the same bytes twice"
 done
 # Without the errors that the first run has kept
