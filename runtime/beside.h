@@ -13,10 +13,18 @@
  *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
  *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
- *     PL(moved_state)[PL_STATES]     and of which state; -1: of none, and 0
+ *     PL(moved_state)[PL_STATES]     and of which state; -1: of none, and 0; -2: it is t
  *     PL_MOVED                   columns that go through events: member contact.doubt
  *     PL(moved_input)[PL_INPUTS]     of each input the model's; behind the first PL_OWN_INPUTS stand seeds */
 #include "numbers.h"
+
+/* t as a state, late by more than rounding: what changes where a step starts changes in that step, from wherever it is
+ * taken */
+static inline real PL(clock)(const PL_OF_TYPE *s)
+{
+    const real t = PL_OF(time)(s);
+    return t - (real)0x1p-30 * PL_H - (PL_SINGLE ? (real)0x1p-17 : (real)0x1p-46) * pl_magnitude(t);
+}
 
 /* The states and derivatives that the model and ds have */
 static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_STATES])
@@ -26,7 +34,7 @@ static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_S
     PL_OF(get)(s, y);
     for (i = 0; i < PL_STATES; i++) {
         const int p = PL(moved_column)[i], of = PL(moved_state)[i];
-        z[i] = of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
+        z[i] = of < -1 ? PL(clock)(s) : of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
     }
 }
 
@@ -38,7 +46,7 @@ static int PL(is_left)(const PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds
     PL(get)(b, w);
     for (i = 0; i < PL_STATES; i++) {
         const int own = PL(moved_column)[i] < 0 && PL(moved_state)[i] >= 0;
-        left = left && z[i] == (own ? ds->left[PL(moved_state)[i]] : w[i]);
+        left = left && (PL(moved_state)[i] < -1 || z[i] == (own ? ds->left[PL(moved_state)[i]] : w[i]));
     }
     return left;
 }

@@ -60,6 +60,9 @@ typedef struct PL(piece) { /* a part of a step */
 #if PL_CONTACTS
     real low[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_ORDER)];
     pl_instant at;                /* what happens where it begins; law: the series from there */
+#if PL_MOVED
+    real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];
+#endif
 #else
     pl_crossing found;            /* what it meets */
 #endif

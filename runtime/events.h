@@ -13,7 +13,8 @@ typedef struct pl_event_impact {
     int expression, breakpoint, upward;
     int hold;               /* number of the constraint of its contact at rest; -1: it is no bounce */
     int place, speed;       /* watches: penetration and approach speed */
-    int jump, still, jumps; /* first assignment of its jump; of that with restitution 0; how many each has */
+    int jump, still, jumps; /* first assignment of its jump; of that with restitution 0; how many each has.  0: where a
+                             * formula jumps; still is -1 then, if that is a time which only params move */
     PL_REAL restitution;
     PL_REAL per; /* change of the switching function for a penetration of 1 */
 } pl_event_impact;

@@ -73,6 +73,9 @@ static void PL(watch)(PL(piece) *p, real y[PL_STATES])
     PL(open)(&p->at, p->contact, y, p->low, p->law[0], p->terms, p->work);
     p->at.expand = PL(again);
     p->at.from = p;
+#if PL_MOVED
+    p->at.moved = p->moved;
+#endif
 }
 
 /* Where the part begins; what is asked there is of a series. */
@@ -135,6 +138,25 @@ static real PL(onto_event)(const PL(piece) *p, real at, real size, real left, re
     return PL(onto)(p, at, size, left, PL(column)[e->expression], PL(breakpoint_of)(e), e->upward, y);
 }
 
+#if PL_MOVED
+/* The derivatives of what this one holds */
+static void PL(put_moved_back)(int hold, const real d[2][PL_TERMS], real y[PL_STATES])
+{
+    const real *const value = d[0] + PL_SWITCHING_FUNCTIONS;
+    const int impact = PL(along).hold[hold].impact;
+    int p, k;
+    for (p = 0; p < PL_MOVED; p++) {
+        const ptrdiff_t row = (ptrdiff_t)hold * PL_MOVED + p;
+        const real *const back = PL(moved).back + 2 * row * PL_STATES;
+        const real speed = value[PL(moved).velocity[row]];
+        const real off = impact < 0 ? 0 : value[PL(moved).place[impact * PL_MOVED + p]];
+        for (k = 0; k < PL_STATES; k++) {
+            y[k] -= back[k] * speed + back[PL_STATES + k] * off;
+        }
+    }
+}
+#endif
+
 /* Puts back what was held and, as forces are polynomials in a part, has moved by the error of that; d: at its end.
  * Whether there was any */
 static int PL(put_back)(const PL(contact) *contact, const real d[2][PL_TERMS], real y[PL_STATES])
@@ -151,6 +173,9 @@ static int PL(put_back)(const PL(contact) *contact, const real d[2][PL_TERMS], r
             for (k = 0; k < PL_STATES; k++) {
                 y[k] -= back[k] * speed + place[k] * off;
             }
+#if PL_MOVED
+            PL(put_moved_back)(i, d, y);
+#endif
         }
     }
     return any;

@@ -7,6 +7,7 @@
 typedef struct leaving { /* what stood before the event */
     int met;             /* whether what is met has a derivative: no formula that goes on without a jump */
     int leapt;           /* a load that jumps has met it, at a time of its own */
+    int none, timed;     /* 1: it is where a formula jumps, and no state; at a time that only params move */
     int function, crossings_before, impacts;
     uint64_t held;
     unsigned doubt; /* for the case that the field jumps */
@@ -126,6 +127,8 @@ static leaving leave(const pl_events *m, pl_instant *at)
     l.function = at->next.expression;
     l.crossings_before = *at->crossings;
     l.impacts = at->chain.all;
+    l.none = at->starting >= 0 && m->impact[at->starting].jumps == 0;
+    l.timed = l.none && m->impact[at->starting].still < 0;
     l.held = held_now(m, at);
     l.doubt = 0;
     l.leapt = 0;
@@ -164,7 +167,8 @@ static unsigned order_of_events(const pl_events *m, const pl_instant *at, const 
     const int again = l->crossings_before > 0 && at->crossing[l->crossings_before - 1].expression != l->function &&
                       time - at->crossing[l->crossings_before - 1].time <= none;
     const int several = (at->chain.acting & (at->chain.acting - 1u)) != 0;
-    return again || several || time <= none || time >= m->h - none ? PL_D_ONE_SIDED : 0;
+    const int ends = !l->timed && (time <= none || time >= m->h - none);
+    return again || several || ends ? PL_D_ONE_SIDED : 0;
 }
 
 /* f- - f+ in the place of f-, 0 where it is but rounding; whether there is any */
@@ -186,7 +190,7 @@ static void arrive(const pl_events *m, pl_instant *at, const leaving *l)
 {
     real *field = field_before(m, at);
     const uint64_t begun = held_now(m, at) & ~l->held, ended = l->held & ~held_now(m, at);
-    const int jumped = at->chain.all - l->impacts;
+    const int jumped = at->chain.all - l->impacts - l->none;
     unsigned doubt = l->doubt;
     if (!l->met) {
         doubt = begun != 0 || ended != 0 || jumped ? PL_D_ONE_SIDED : 0;

@@ -529,7 +529,7 @@ static void take_derivatives(void *context)
 	const struct request *request = b->request;
 	if (request->sensitivity && !parse_sensitivities(b->spec, source_argument(request->sensitivity)))
 		abandon();
-	add_derivatives(b->spec, request->again.derivatives_from, request->again.derivatives);
+	add_derivatives(b->spec, request->again.derivatives_from, request->again.derivatives, request->again.jumps);
 }
 
 struct model *model_build(struct spec *spec, const struct request *request)

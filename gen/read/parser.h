@@ -171,6 +171,7 @@ struct slope {                      /* a derivative; an error at `at` where it h
 struct node *slope_by(struct node *node, struct slope by);
 struct node *slope_of(struct node *node, struct place at);  /* in time */
 bool reads_states(const struct node *node);
+bool follows_param(const struct node *node, const struct symbol *param);   /* whether it is made of the param */
 
 /* ---- unobservable.c ---- */
 

@@ -203,6 +203,7 @@ struct when {                       /* when guard: jump, jump;  or a stop that b
 	/* of stop: between two coordinates, NULL: the ground; what comes up to `gap` is from - to; both NULL: between
 	 * expressions. restitution NULL: it is no stop */
 	struct node *from, *to, *gap, *restitution;
+	bool chosen, timed;         /* it is where a formula jumps, beside derivatives, and no state; by time alone */
 	int slopes;                 /* one per derivative of the equations */
 	struct when_slope *slope;
 };
@@ -382,8 +383,8 @@ bool is_constrained(const struct spec *spec, int component);
 
 bool parse_sensitivities(struct spec *spec, const struct source *source); /* of --sensitivity, instead of the spec's */
 /* To the spec, what so many derivatives follow: coordinates, equations, initial values, outputs behind its own */
-void add_derivatives(struct spec *spec, int first, int count);
-const struct node *jump_by_state(const struct spec *spec);   /* a formula that the state chooses; NULL: none jumps */
+/* jumps: of formulas that the state, or a time that moves, chooses, too */
+void add_derivatives(struct spec *spec, int first, int count, bool jumps);
 
 /* ---- params.c: other values of params than the spec's ---- */
 

@@ -94,38 +94,127 @@ bool parse_sensitivities(struct spec *spec, const struct source *source)
 	return parse_list(spec, source, read_sensitivity);
 }
 
-/* ---- what a derivative would have to jump at ---- */
+/* ---- where a formula jumps, and with it the derivatives ---- */
 
-/* The first formula that the state chooses and that may jump there: abs, min, max, deadzone and clip do not */
-static const struct node *jump_within(const struct node *node, bool *seen)
+struct choosing {
+	struct spec *spec;
+	const struct sensitivity *by; /* `count` of them */
+	int count;
+	struct symbol *clock;         /* t as a coordinate, once it is asked for */
+	bool *seen;                   /* per number of a symbol */
+	bool watched;                 /* else what is chosen jumps in outputs alone */
+};
+
+static bool reads_time(const struct node *node)
+{
+	bool reads = node->kind == NODE_TIME || (node->kind == NODE_NAME && node->symbol->value &&
+						 reads_time(node->symbol->value));
+	for (int i = 0; i < node->children && !reads; i++)
+		reads = reads_time(node->child[i]);
+	return reads;
+}
+
+static bool follows_any(const struct choosing *c, const struct node *node)
+{
+	bool any = false;
+	for (int i = 0; i < c->count && !any; i++)
+		any = c->by[i].symbol->kind == SYMBOL_PARAM && follows_param(node, c->by[i].symbol);
+	return any;
+}
+
+/* x' = 1: so a time that moves with a param is met as a state's place is */
+static void add_clock(struct choosing *c, struct place at)
+{
+	struct spec *spec = c->spec;
+	struct node *one = node_new(NODE_NUMBER, at);
+	c->clock = NEW(struct symbol);
+	*c->clock = (struct symbol){ .kind = SYMBOL_COORD, .name = "t_clock", .at = at, .used = true,
+				     .index = spec->count.components++ };
+	add_symbol(spec, c->clock);
+	spec->count.coords++;
+	mpq_set_ui(one->number, 1, 1);
+	*MORE(spec->equation, spec->equations) = (struct equation){ .at = at, .left = state_node(c->clock, 0, 1),
+								    .right = one };
+}
+
+/* The same by the clock */
+static struct node *clocked(struct choosing *c, struct node *node)
+{
+	if (!reads_time(node))
+		return node;
+	if (node->kind == NODE_NAME)
+		return clocked(c, node->symbol->value);
+	if (node->kind == NODE_TIME)
+		return state_node(c->clock, 0, 0);
+	struct node *made = NEW(struct node);
+	*made = *node;
+	made->children = made->depth = 0;
+	made->timely = TIMELY_UNKNOWN;
+	for (int i = 0; i < node->children; i++)
+		add_child(made, clocked(c, node->child[i]), node->inverse[i], node->operator[i]);
+	made->start = node->start;
+	made->end = node->end;
+	return made;
+}
+
+/* Met either way, as an impact is that changes nothing; before those that the spec has */
+static void add_choice(struct choosing *c, struct node *test, bool timed)
+{
+	struct spec *spec = c->spec;
+	for (int down = 0; down < 2; down++) {
+		struct node *guard = node_new(NODE_COMPARE, test->at);
+		guard->comparison = down ? CMP_LE : CMP_GE;
+		add_child(guard, test->kind == NODE_COMPARE ? test->child[0] : test, false, test->at);
+		add_child(guard, test->kind == NODE_COMPARE ? test->child[1] : node_new(NODE_NUMBER, test->at), false,
+			  test->at);
+		guard->start = test->start;
+		guard->end = test->end;
+		MORE(spec->when, spec->whens);
+		memmove(spec->when + 1, spec->when, (size_t)(spec->whens - 1) * sizeof *spec->when);
+		spec->when[0] = (struct when){ .at = test->start, .end = test->end, .guard = guard, .chosen = true,
+					       .timed = timed };
+	}
+}
+
+static void find_choices(struct choosing *c, struct node *node)
 {
 	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	const bool jumps = node->kind == NODE_CHOOSE || (node->kind == NODE_CALL && node->function == FN_SGN);
-	if (jumps && reads_states(node->child[0]))
-		return node;
-	const struct node *found = NULL;
-	if (s && s->kind == SYMBOL_LET && s->value && !seen[s->number]) {
-		seen[s->number] = true;
-		found = jump_within(s->value, seen);
+	if (s && s->kind == SYMBOL_LET && s->value && !c->seen[s->number]) {
+		c->seen[s->number] = true;
+		find_choices(c, s->value);
 	}
-	for (int i = 0; i < node->children && !found; i++)
-		found = jump_within(node->child[i], seen);
-	return found;
+	for (int i = 0; i < node->children; i++)
+		find_choices(c, node->child[i]);
+	if (!jumps)
+		return;
+	struct node **test = &node->child[0];
+	const bool timed = !reads_states(*test) && reads_time(*test) && follows_any(c, *test);
+	if (timed && !c->clock)
+		add_clock(c, (*test)->at);
+	if (timed)
+		*test = clocked(c, *test);
+	if (c->watched && reads_states(*test))
+		add_choice(c, *test, timed);
 }
 
-const struct node *jump_by_state(const struct spec *spec)
+static void watch_choices(struct spec *spec, int first, int count)
 {
-	bool *seen = ARRAY(bool, (size_t)spec->count.symbols + 1);
-	const struct node *found = NULL;
-	for (int i = 0; i < spec->equations && !found; i++) {
-		found = jump_within(spec->equation[i].left, seen);
-		found = found || !spec->equation[i].right ? found : jump_within(spec->equation[i].right, seen);
+	struct choosing c = { .spec = spec, .by = spec->sensitivity + first, .count = count, .watched = true,
+			      .seen = ARRAY(bool, (size_t)spec->count.symbols + 1) };
+	for (int i = 0, equations = spec->equations; i < equations; i++) {
+		find_choices(&c, spec->equation[i].left);
+		find_choices(&c, spec->equation[i].right);
 	}
-	for (int i = 0; i < spec->elements && !found; i++)
-		found = jump_within(spec->element[i].value, seen);
-	for (int i = 0; i < spec->lagrange.energies && !found; i++)
-		found = jump_within(spec->lagrange.energy[i].value, seen);
-	return found;
+	for (int i = 0; i < spec->elements; i++)
+		if (spec->element[i].value)
+			find_choices(&c, spec->element[i].value);
+	for (int i = 0; i < spec->lagrange.energies; i++)
+		find_choices(&c, spec->lagrange.energy[i].value);
+	c.watched = false;
+	for (struct symbol *s = spec->first; s; s = s->next)
+		if (s->kind == SYMBOL_OUTPUT && !s->peak)
+			find_choices(&c, s->value);
 }
 
 /* ---- the equations of the derivatives ---- */
@@ -381,10 +470,12 @@ struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *b
 	return slope_by(delayed->when, slope);
 }
 
-void add_derivatives(struct spec *spec, int first, int count)
+void add_derivatives(struct spec *spec, int first, int count, bool jumps)
 {
 	if (count == 0)
 		return;
+	if (jumps)
+		watch_choices(spec, first, count);
 	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->lagrange.energies,
 				       spec->states.initials, spec->count.components, has_timed_events(spec) };
 	spec->joined.columns = count;

@@ -91,15 +91,14 @@ static struct node *slope_by_velocity(struct node *node, const struct slope *by)
 
 /* ---- by a param ---- */
 
-/* Whether an expression is made of the param */
-static bool follows(const struct node *node, const struct slope *by)
+bool follows_param(const struct node *node, const struct symbol *param)
 {
 	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
-	bool found = s && s == by->param;
+	bool found = s && s == param;
 	if (s && !found && s->value)
-		found = follows(s->value, by);
+		found = follows_param(s->value, param);
 	for (int i = 0; i < node->children && !found; i++)
-		found = follows(node->child[i], by);
+		found = follows_param(node->child[i], param);
 	return found;
 }
 
@@ -123,11 +122,11 @@ bool reads_states(const struct node *node)
 	return reads;
 }
 
-/* A formula changes where this goes through 0. In time that moves with the param, and there the derivative jumps; as
- * the state chooses it does not, for then the formula does not jump (step/derivatives.c). */
+/* A formula changes where this goes through 0. In time that moves with the param, and there the derivative jumps; what
+ * jumps as the state chooses is watched (sensitivity.c). */
 static void check_condition(const struct node *node, const struct slope *by)
 {
-	if (by->kind == SLOPE_PARAM && follows(node, by) && !is_constant_node(node) && !reads_states(node))
+	if (by->kind == SLOPE_PARAM && follows_param(node, by->param) && !is_constant_node(node) && !reads_states(node))
 		error(node->at, "where a formula changes has to stay where it is",
 		      "no derivative by %s is built here: it moves where the formula changes", by->name);
 }
@@ -171,7 +170,7 @@ static struct node *varied_name(struct node *node, const struct slope *by)
 	if (symbol->kind == SYMBOL_INPUT && by->time && symbol->hold > 0)
 		return along_time(node, made->symbol ? made : NULL, by);
 	/* u(t - d): its slope along a ramp; where it jumps: step/derivatives.c */
-	if (symbol->delayed && symbol->hold > 0 && node->primes == 0 && follows(symbol->when, by)) {
+	if (symbol->delayed && symbol->hold > 0 && node->primes == 0 && follows_param(symbol->when, by->param)) {
 		made->symbol = node->symbol;
 		made->primes = 1;
 		return times(made, derivative(symbol->when, by));

@@ -35,6 +35,13 @@ static const char *external_columns(const struct model *model)
 	return list;
 }
 
+/* Whether a formula may jump, and the derivatives with it */
+static bool has_jumps(const struct step *step)
+{
+	return has_remainder(step) &&
+	       (step->model->remainder.smooth.kind == SMOOTH_JUMP || loads_change(&step->model->system));
+}
+
 /* What of the request concerns how a step is made faster, or reports it, does not hold for the derivatives. */
 static struct request request_of_derivatives(const struct step *step, int first, int count)
 {
@@ -42,7 +49,7 @@ static struct request request_of_derivatives(const struct step *step, int first,
 	request.external = false;
 	if (step->model->request.external)
 		request.sensitivity = external_columns(step->model);
-	request.again = (struct again){ .derivatives_from = first, .derivatives = count };
+	request.again = (struct again){ .derivatives_from = first, .derivatives = count, .jumps = has_jumps(step) };
 	request.scheme = scheme_of_derivatives(step);
 	if (goes_apart(step))
 		request.prefix = format("%s_d%d", step->model->name, first);
@@ -124,20 +131,15 @@ static struct step *step_of(const struct step *step, int first, int count)
 	return made;
 }
 
-/* Where a formula jumps as the state chooses it, the derivatives would have to jump. */
-static void check_smooth(const struct model *model)
-{
-	const struct node *jump = jump_by_state(model->spec);
-	if (jump && model->remainder.smooth.kind == SMOOTH_JUMP)
-		error(jump->start, NULL, "a sensitivity where the state chooses a formula that jumps is not built yet");
-}
-
 /* As many together as have a step that is unrolled: those share the loads' functions. Those of a series share the
- * model's own, too. */
+ * model's own, too. Parts of a step that events split have tables of their size. */
 static int columns_together(const struct step *step)
 {
+	const struct model *model = step->model;
+	const int states = model->written->system.states, forces = 3 * model->remainder.force_columns;
 	const int most = LIMIT_UNROLLED_STATES * (step->is.flow == FLOW_SERIES ? 4 : 1);
-	const int together = most / step->model->written->system.states - 1;
+	const bool splits = step->is.flow == FLOW_RECIPE && (has_jumps(step) || goes_by_events(model));
+	const int together = splits ? LIMIT_TUNED_BLOCK / (states + forces + 3) - 1 : most / states - 1;
 	return together > 1 ? together : 1;
 }
 
@@ -171,8 +173,6 @@ static void derive(void *context)
 	struct step *step = context;
 	const struct spec *spec = step->model->spec;
 	check_derivable(step);
-	if (has_remainder(step))
-		check_smooth(step->model);
 	struct derivatives *d = NEW(struct derivatives);
 	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity,
 				    .apart = goes_apart(step) };

@@ -293,7 +293,7 @@ while read -r name; do
 	done >"$name.differences"
 	# shellcheck disable=SC2086
 	differ "$name" "$end" "$bound" "${exact:+--tolerance 1e-12}" $params
-	case $name in peaks*)
+	case $name in peaks* | chosen*)
 		backwards "$name" "$name.spec" --sensitivity "$(echo "$params" | sed 's/=[^ ]*//g; s/ /,/g')"
 	esac
 	[ "$seeds" -gt 16 ] && [ "$exact" ] && for tolerance in 1e-6 1e-9; do

@@ -124,6 +124,7 @@ static void emit_algorithm(const struct emitter *e)
 	if (e->step->normal)
 		emit_mode_sizes(e);
 	emit_switching_macros(by_series(e, e->step->event_split->event_check));
+	emit_moved_columns(e);
 	say(e, "#define PL_FASTEST %s\n"
 	       "#define PL_CERTAIN %s\n"
 	       "#include \"event_split.h\"\n", shortest(event_split_of(e)->fastest),

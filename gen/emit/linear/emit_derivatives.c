@@ -155,14 +155,17 @@ void emit_derivative_declarations(const struct emitter *e)
 /* ---- a block's model as an emitter of its own, whose numbers stand elsewhere ---- */
 
 /* Of a state of the block: the column that it is of, from 0; NONE: it is a state itself. *state: which; NONE: it is the
- * derivative of t, and 0 */
+ * derivative of t, and 0; CLOCK: t */
+enum { CLOCK = -2 };
 static int column_of(const struct model *written, const struct derivative_block *block, int place, int *state)
 {
 	const struct model *model = block->step->model;
-	const int n = written->n, stride = model->spec->joined.stride, coord = model->system.coord[place];
-	const int own = coord < n ? coord : (coord - n) % stride;
-	*state = own == n ? NONE : place >= model->n ? written->system.velocity[own] : own;
-	return coord < n || own == n ? NONE : block->first + (coord - n) / stride;
+	const int own = model->spec->joined.own, stride = model->spec->joined.stride;
+	const int coord = model->system.coord[place];
+	const int of = coord < own ? coord : (coord - own) % stride;
+	const bool added = of >= written->n;
+	*state = added ? (coord < own ? CLOCK : NONE) : place >= model->n ? written->system.velocity[of] : of;
+	return coord < own || added ? NONE : block->first + (coord - own) / stride;
 }
 
 static const char **places_of_states(const struct model *written, const struct derivative_block *block)
@@ -320,8 +323,8 @@ static void emit_block_beside(const struct emitter *e, int number)
 	}
 	for (int i = 0; i < inputs; i++)
 		input[i] = i < given_inputs(e) ? i : input_of_seed(e, block, i);
-	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state, -1: it is 0%s */\n", e->name,
-	    inputs ? "; of each input the model's" : "");
+	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state, -1: it is 0, -2: t%s */\n",
+	    e->name, inputs ? "; of each input the model's" : "");
 	emit_int_list(b, "moved_column", states, column);
 	emit_int_list(b, "moved_state", states, state);
 	if (inputs)

@@ -123,9 +123,13 @@ static void collect_impact(void *context)
 	mpq_inits(impact_law->restitution, impact_law->gap, impact_law->at, impact_law->factor, NULL);
 	if (when->restitution)
 		check_stop(b, when, impact_law->restitution, impact_law->gap);
+	for (int i = 0; i < 2 && when->chosen; i++)
+		if (collect(&b->collector, side[i])->rows > 1)
+			error(when->at, "with the equation of each component, it is", "a sensitivity where a vector "
+			      "chooses a formula for each component is not built");
 	struct form *left = scalar_form(b, side[0]), *right = scalar_form(b, side[1]);
 	collect_slopes(b, when, impact_law);
-	if (!when->restitution || !keeps_smooth(b, left) || !keeps_smooth(b, right)) {
+	if (!when->chosen && (!when->restitution || !keeps_smooth(b, left) || !keeps_smooth(b, right))) {
 		check_linear(b, side[0], left, "a guard");
 		check_linear(b, side[1], right, "a guard");
 	}
@@ -135,7 +139,7 @@ static void collect_impact(void *context)
 		      "this guard never changes");
 	for (int i = 0; i < impact_law->guard->terms; i++) {
 		const struct basis *basis = &impact_law->guard->term[i].basis;
-		if (basis->kind == BASIS_INPUT && !input_hold(b, basis->index))
+		if (basis->kind == BASIS_INPUT && !input_hold(b, basis->index) && !when->chosen)
 			error(when->guard->start, "as a ramp it moves: input ... hold first",
 			      "this guard jumps with an input that is held");
 	}
@@ -400,7 +404,7 @@ static void check_alike(void *context)
 	const struct impact *all = b->model->contacts.impact, *impact = &all[work->index];
 	RATIONAL ratio = ZERO, rest = ZERO;
 	for (int i = 0; i < work->index; i++)
-		for (int s = 0; s < b->model->system.segments; s++)
+		for (int s = 0; s < b->model->system.segments && !all[i].when->chosen; s++)
 			if (is_along(b, impact->in[s].guard, all[i].in[s].guard, ratio, rest) && mpq_sgn(rest) == 0)
 				error(impact->when->guard->start,
 				      "all that jumps there belongs into one 'when', with commas",
@@ -430,6 +434,10 @@ static void build_impact(void *context)
 	for (int s = 0; s < b->model->system.segments; s++) {
 		struct impact_law *impact_law = &impact->in[s];
 		bool bounces = when->restitution != NULL;
+		if (when->chosen) {
+			impact_law->speed = NEW(struct form);
+			continue;
+		}
 		find_slope_speeds(b, when, impact_law);
 		if (when->restitution && (b->spec->joined.columns > 0 || contact_moves(b, impact_law->guard))) {
 			impact_law->speed = speed_that_moves(b, when, impact_law->guard);

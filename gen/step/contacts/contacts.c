@@ -423,6 +423,7 @@ static void watch_impact(struct constraints *all, int index)
 	}
 	series_impact->place = watch(w, sequence_of_form(w, impact->in->guard), false);
 	series_impact->speed = series_impact->place;
+	series_impact->still = impact->when->timed ? -1 : series_impact->still;
 	if (series_impact->hold == NONE)
 		return;
 	if (!impact->moves) {
