@@ -403,11 +403,14 @@ static bool is_still(const contacts *m, const instant *t, int k)
 
 /* Whether what is next to its hold is there, with a velocity that is but rounding; what may bounce comes to rest by the
  * time of its bounces, as on the target rounding makes some velocity of none */
-static bool is_there(const contacts *m, const instant *t, int expression, int impact)
+static bool is_there(const contacts *m, const instant *t, int expression, int held, int impact)
 {
 	if (impact < 0) {
 		RATIONALS *row = trajectory_row_of(t, t->s->function[expression].row);
-		return is_none(t, row);
+		INTERVAL velocity = OVER_BITS(t->precision);
+		trajectory_dot(t, row, t->x, velocity);
+		mpfi_sub_q(velocity, velocity, t->s->function[expression].at[held]);
+		return trajectory_is_none(t, velocity, trajectory_size(t, row));
 	}
 	return !(m->impact[impact].restitution > 0) && touches(m, t, impact) && is_still(m, t, impact);
 }
@@ -420,7 +423,7 @@ static int find_resting(const contacts *m, const instant *t, resting *found)
 			const int side = interval_of(m, t, e) - k, impact = impact_resting(t->s, t->when.segment, e, k);
 			if (!is_stick(&t->s->function[e], k) || side < -1 || side > 1)
 				continue;
-			if (side == 0 || side == side_let_go(t, e) || is_there(m, t, e, impact))
+			if (side == 0 || side == side_let_go(t, e) || is_there(m, t, e, k, impact))
 				found[count++] = (resting){ .expression = e, .held = k, .impact = impact };
 		}
 	return count;
