@@ -136,4 +136,12 @@ for scheme in etdrk4 nc3 etdcol; do
 				exit !(rows > 3900 && worst <= 1e-12) }' rows.csv >>log
 	result $? "$scheme: what sticks and what lies is still"
 done
+
+# Friction of a belt starts with the velocity that is given, 0: x' = 1.5 t up to 0.2, in closed form.
+printf '%s\n' 'model belt' 'coord x' "x'' + friction(x' - 0.2, 1.5) = 0" "output x, x'" 'step 0.1' >belt.spec
+"$plgen" --solution 0.2 belt.spec | grep -v '^#' >solution.csv
+awk -F, 'NR == 3 { first = $3 } NR == 4 { last = $3 }
+	END { print "# " first ", " last; exit !(first - 0.15 <= 1e-16 && 0.15 - first <= 1e-16 && last == 0.2) }' \
+	solution.csv >log
+result $? 'friction of a belt that the start does not share: --solution'
 tap_end
