@@ -12,10 +12,11 @@ struct differentiation {
 	/* or in time, of which this is the derivative of a term that is no atom */
 	struct form *(*rate)(void *context, const struct form_term *term);
 	void *context;
+	bool held;                  /* highest derivatives are constant */
 	struct form **known;        /* per atom: its derivative, once found */
 	int count;
-	int systems;                /* of linear equations: right sides of the derivatives, for all components */
-	struct { const struct atom *atom; const struct form **right; } *system;
+	int systems;                /* of linear equations: those of the derivatives, for all components */
+	struct { const struct atom *atom; struct linear_system solved; } *system;
 };
 
 static struct form *derive(struct differentiation *d, const struct form *form);
@@ -187,6 +188,33 @@ static const struct form **right_of_solution(struct differentiation *d, const st
 	return right;
 }
 
+/* Of F(x) = 0, not linear in x: F_x x' = -F', F' the derivative of the residuals while x stays */
+static void solve_curved(struct differentiation *d, const struct atom *a, struct linear_system *e)
+{
+	const int n = e->n, atoms = atoms_count(d->c->atoms);
+	const bool equation = d->c->equation;
+	struct differentiation inner = *d;
+	struct fixing *fixing = ARRAY(struct fixing, n);
+	const struct form **slope = ARRAY(const struct form *, n * n), **right = ARRAY(const struct form *, n);
+	d->c->equation = inner.held = true;
+	inner.known = ARRAY(struct form *, inner.count = atoms);
+	inner.systems = 0;
+	inner.system = NULL;
+	for (int j = 0; j < n; j++) {
+		const struct basis *x = &a->written->highest[j];
+		fixing[j] = (struct fixing){ .symbol = d->c->frame->coord[x->index], .coord = x->index,
+					     .order = x->order, .by = kept_solution(d->c, a->node, e, j) };
+	}
+	struct point *there = point_new(d->c, n, fixing);
+	for (int i = 0; i < n * n; i++)
+		slope[i] = form_at(there, a->written->slope[i]);
+	for (int i = 0; i < n; i++)
+		right[i] = form_difference(NEW(struct form), form_at(there, derive(&inner, a->written->residual[i])));
+	d->c->equation = equation;
+	e->M = slope;
+	e->f = right;
+}
+
 /* M x' = f' - M' x */
 static struct form *derive_solution(struct differentiation *d, const struct atom *a)
 {
@@ -195,13 +223,16 @@ static struct form *derive_solution(struct differentiation *d, const struct atom
 	while (known < d->systems && !same_solution(d->system[known].atom, a))
 		known++;
 	if (known == d->systems) {
-		const struct form **right = right_of_solution(d, a);
+		if (a->written && a->written->slope)
+			solve_curved(d, a, &e);
+		else
+			e.f = right_of_solution(d, a);
 		known = d->systems++;           /* operands may have been solutions themselves */
 		ENLARGE(d->system, (size_t)d->systems);
 		d->system[known].atom = a;
-		d->system[known].right = right;
+		d->system[known].solved = e;
 	}
-	e.f = d->system[known].right;
+	e = d->system[known].solved;
 	e.written = NULL;
 	return kept_solution(d->c, a->node, &e, a->component);
 }
@@ -242,6 +273,8 @@ static struct form *derive(struct differentiation *d, const struct form *form)
 		const struct form_term *term = &form->term[i];
 		if (term->basis.kind == BASIS_ATOM)
 			form_add_to(total, known_derivative(d, term->basis.atom), term->factor);
+		else if (d->held && is_highest(d->c->frame, &term->basis))
+			continue;
 		else if (d->rate)
 			form_add_to(total, d->rate(d->context, term), NULL);
 		else if (term->basis.kind == d->kind && term->basis.index == d->index &&
@@ -297,7 +330,7 @@ struct point {
 
 static struct form *place_form(struct point *p, const struct form *form);
 
-static mpq_srcptr fixed_value(const struct point *p, const struct basis *basis)
+static const struct fixing *fixed(const struct point *p, const struct basis *basis)
 {
 	const bool input = basis->kind == BASIS_INPUT;
 	for (int i = 0; i < p->fixings; i++) {
@@ -305,7 +338,7 @@ static mpq_srcptr fixed_value(const struct point *p, const struct basis *basis)
 		const enum symbol_kind kind = f->symbol ? f->symbol->kind : SYMBOL_LET;
 		if ((input ? kind == SYMBOL_INPUT : kind == SYMBOL_COORD || kind == SYMBOL_MULTIPLIER) &&
 		    f->coord == basis->index && f->order == basis->order)
-			return f->value;
+			return f;
 	}
 	return NULL;
 }
@@ -416,9 +449,9 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 {
 	const struct fixing *time = fixed_time(p);
 	const bool is_named = basis->kind == BASIS_COORD || basis->kind == BASIS_INPUT;
-	mpq_srcptr value = is_named ? fixed_value(p, basis) : NULL;
-	if (value)
-		return form_constant(value);
+	const struct fixing *f = is_named ? fixed(p, basis) : NULL;
+	if (f)
+		return f->by ? sum(f->by, NEW(struct form)) : form_constant(f->value);
 	if (basis->kind == BASIS_FORCING && time)
 		return forcing_at(p, basis, time);
 	if (basis->kind != BASIS_ATOM)

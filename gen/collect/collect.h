@@ -223,6 +223,9 @@ struct written_system {
 	int rows;
 	const struct basis *highest;
 	const struct form *const *residual;
+	/* their derivatives by these, where they are not linear in them: M and f are of the last turn; else NULL */
+	const struct form *const *slope;
+	const struct form **found;  /* then what is not linear in each, of their solution */
 };
 struct linear_system {              /* M x = f, n x n, row by row */
 	int n;
@@ -232,6 +235,7 @@ struct linear_system {              /* M x = f, n x n, row by row */
 struct form *kept_solution(struct collector *c, const struct node *node, const struct linear_system *e, int component);
 /* Of such an atom, with these operands in the place of its own: written as another */
 struct linear_system system_of(const struct atom *atom, const struct form *const *operand);
+void round_long(mpq_ptr value);                            /* to 256 bits, where it has many more */
 bool is_constant_system(const struct atom *atom);          /* M of such an atom is: constraints are solved for */
 bool same_solution(const struct atom *a, const struct atom *b); /* of two such: they differ in the component alone */
 
@@ -243,6 +247,7 @@ struct fixing {                     /* a name that `operator at` fixes */
 	int coord, order;           /* of a coordinate, one component; of an input */
 	const struct form *form;    /* constant: pi stays pi */
 	mpq_t value;
+	const struct form *by;      /* or what takes its place; NULL: the value does */
 };
 /* With respect to one state: a coordinate, or its velocity */
 struct form **form_derivatives(struct collector *c, int count, const struct form *const *form, bool by_input, int index,

@@ -42,6 +42,24 @@ static const mpq_t *inverse_of(const struct node *node, int n, const mpq_t *valu
 	return last.inverse;
 }
 
+void round_long(mpq_ptr value)
+{
+	enum { BITS = 256 };
+	REAL near = WITH_BITS(BITS);
+	if (mpz_sizeinbase(mpq_numref(value), 2) + mpz_sizeinbase(mpq_denref(value), 2) <= 4 * BITS)
+		return;
+	mpfr_set_q(near, value, MPFR_RNDN);
+	mpfr_get_q(value, near);
+}
+
+static struct form *rounded(struct collector *c, const struct form *x)
+{
+	RATIONAL value = ZERO;
+	constant_value(c, x, value);
+	round_long(value);
+	return form_constant(value);
+}
+
 /* Of a constant M: its inverse times f */
 static struct form *constant_solution(struct collector *c, const struct node *node, const struct linear_system *e,
 				      int component)
@@ -49,12 +67,14 @@ static struct form *constant_solution(struct collector *c, const struct node *no
 	struct form *x = NEW(struct form);
 	const int n = e->n;
 	RATIONALS *value = rationals((size_t)(n * n));
-	for (int i = 0; i < n * n; i++)
+	for (int i = 0; i < n * n; i++) {
 		constant_value(c, e->M[i], value[i]);
+		round_long(value[i]);
+	}
 	const mpq_t *inverse = inverse_of(node, n, value);
 	for (int j = 0; j < n; j++)
 		form_add_to(x, e->f[j], inverse[component * n + j]);
-	return x;
+	return is_constant(x) ? rounded(c, x) : x;
 }
 
 /* Multipliers stay unknowns of their own, though M is constant: then a step projects onto their constraints. */
@@ -74,7 +94,7 @@ struct form *kept_solution(struct collector *c, const struct node *node, const s
 		return NEW(struct form);
 	if (all_constant(cells, e->M) && !has_multipliers(c, e))
 		return constant_solution(c, node, e, component);
-	if (n == 1)
+	if (n == 1 && !(e->written && e->written->slope))
 		return kept_product(c, node, e->f[0], kept_reciprocal(c, node, e->M[0]));
 	for (int i = 0; i < n; i++)
 		operand[i] = e->f[i];

@@ -48,8 +48,8 @@ static const struct form **entries(const struct segment_equations *s, int *count
 	const struct form **entry = NULL;
 	*count = 0;
 	for (int i = 0; i < s->masses; i++)
-		for (int k = 0; k < s->mass[i].system.n * s->mass[i].system.n; k++)
-			*MORE(entry, *count) = s->mass[i].system.M[k];
+		for (int k = 0; k < s->mass[i].plain.n * s->mass[i].plain.n; k++)
+			*MORE(entry, *count) = s->mass[i].plain.M[k];
 	return entry;
 }
 
@@ -71,7 +71,7 @@ int moving_masses(const struct emitter *e)
 {
 	const struct segment_equations *s = e->model->equations.full;
 	int count, rows = 0;
-	for (int i = 0; s && i < s->masses; rows += s->mass[i++].system.n)
+	for (int i = 0; s && i < s->masses; rows += s->mass[i++].plain.n)
 		if (!s->mass[i].start)
 			return 0;
 	if (rows == 0 || e->model->relative || !(steps_may_fail(e) || looks_at_masses(e)))
@@ -92,11 +92,11 @@ static struct formulas *mass_entries(const struct emitter *e)
 	int count, first = 0;
 	const struct form **entry = entries(s, &count);
 	struct formulas *f = formulas_new(e, (struct reading){ .written = true }, count, entry);
-	for (int b = 0; b < s->masses; first += s->mass[b++].system.n)
-		for (int n = s->mass[b].system.n, k = 0; k < n * n; k++)
-			if (s->mass[b].system.M[k]->terms)
+	for (int b = 0; b < s->masses; first += s->mass[b++].plain.n)
+		for (int n = s->mass[b].plain.n, k = 0; k < n * n; k++)
+			if (s->mass[b].plain.M[k]->terms)
 				tape_set(formulas_tape(f), format("mass[%d][%d]", first + k / n, first + k % n),
-					 formula(f, s->mass[b].system.M[k]), 14, NULL);
+					 formula(f, s->mass[b].plain.M[k]), 14, NULL);
 	return f;
 }
 
@@ -115,10 +115,10 @@ static void emit_mass_tables(const struct emitter *e, int rows)
 	double *value = ARRAY(double, rows);
 	int *block = ARRAY(int, rows), row = 0;
 	for (int b = 0; b < s->masses; b++) {
-		const int n = s->mass[b].system.n;
+		const int n = s->mass[b].plain.n;
 		for (int i = 0; i < n; i++)
 			value[row++] = fabs(finite_number(e, s->mass[b].start[i * n + i]));
-		block[row - 1] = is_symmetric_mass(&s->mass[b].system) ? 1 : 2;
+		block[row - 1] = is_symmetric_mass(&s->mass[b].plain) ? 1 : 2;
 	}
 	emit_array(e, "Sizes of the diagonal of the mass matrix at the start", "mass_at_start", 1, &rows, value, NULL);
 	if (!may_be_singular(e))

@@ -40,6 +40,12 @@ struct constraint {
 	/* by[0]: what is 0, by[1], by[2]: its derivatives in time; of one on velocities by[0] is NULL, by[1] is 0 */
 	const struct form *by[3];
 };
+struct moving_mass {
+	const struct node *node;
+	struct linear_system system;
+	struct linear_system plain; /* without what is not linear in highest derivatives */
+	mpq_t *start;               /* its M there */
+};
 struct segment_equations {          /* the equations and outputs in one interval of time */
 	int residuals, written;     /* all; those of written equations come first */
 	struct residual *residual;
@@ -47,7 +53,7 @@ struct segment_equations {          /* the equations and outputs in one interval
 	struct value **output;      /* per output statement; NULL: not linear */
 	struct impact_law **impact_law; /* per `when` and stop; NULL: its error was reported */
 	int masses;                 /* blocks of equations in which the mass matrix moves */
-	struct moving_mass { const struct node *node; struct linear_system system; mpq_t *start; } *mass; /* start: M */
+	struct moving_mass *mass;
 	struct constraint *constraint; /* one per multiplier */
 	const struct form *energy[2]; /* T and V of all statements; NULL: there is none */
 	bool negative_kinetic;      /* nothing shows that no T of energies is below 0 */

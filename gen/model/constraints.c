@@ -22,8 +22,8 @@ static const struct segment_equations *rows_of(const struct building *b)
 static void correct_block(struct building *b, const struct moving_mass *mass, int level)
 {
 	const struct linear *system = &b->model->system;
-	const struct written_system *written = mass->system.written;
-	struct linear_system e = mass->system;
+	const struct written_system *written = mass->plain.written;
+	struct linear_system e = mass->plain;
 	const struct form **g = ARRAY(const struct form *, e.n);
 	for (int i = 0; i < e.n; i++) {
 		const int constraint = written->highest[i].index - b->model->n;
@@ -564,7 +564,7 @@ static void check_inputs(const struct building *b)
 {
 	const struct segment_equations *rows = rows_of(b);
 	for (int i = 0; i < rows->masses; i++) {
-		const struct linear_system *e = &rows->mass[i].system;
+		const struct linear_system *e = &rows->mass[i].plain;
 		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 		for (int k = 0; k < e->n * e->n; k++)
 			for (const struct form_term **term = terms_within(e->M[k], seen); *term; term++)

@@ -168,23 +168,24 @@ static mpq_t *fix_highest(struct jacobian *j, struct point *at, const struct mov
 	return inverse;
 }
 
-/* Of all n columns of a block's rows, one after the other */
+/* Of all n columns of a block's rows, one after the other; below 0: of a constraint */
 static int place_in_row(const struct jacobian *j, const struct moving_mass *mass, int i)
 {
 	const int all = j->b->model->n, coord = mass->system.written->highest[i / all].index;
-	return j->b->owner[coord] * all + i % all;
+	return coord < all ? j->b->owner[coord] * all + i % all : -1;
 }
 
-/* Rows of a block times the inverse of its M */
+/* Rows of a block times the inverse of its M: accelerations along constraints, as if these had no curvature */
 static void solve_rows(const struct jacobian *j, const struct moving_mass *mass, const mpq_t *inverse, mpq_t *rows)
 {
 	const int n = mass->system.n, all = j->b->model->n;
 	RATIONALS *own = rationals((size_t)(n * all)), *solved = rationals((size_t)(n * all));
 	for (int i = 0; i < n * all; i++)
-		mpq_set_d(own[i], mpq_get_d(rows[place_in_row(j, mass, i)]));
+		mpq_set_d(own[i], place_in_row(j, mass, i) < 0 ? 0 : mpq_get_d(rows[place_in_row(j, mass, i)]));
 	unreduced_product(n, n, all, inverse, own, solved);
 	for (int i = 0; i < n * all; i++)
-		mpq_set_d(rows[place_in_row(j, mass, i)], mpq_get_d(solved[i]));
+		if (place_in_row(j, mass, i) >= 0)
+			mpq_set_d(rows[place_in_row(j, mass, i)], mpq_get_d(solved[i]));
 }
 
 /* With F = M q'' - f as written and q'' as it is there, M^-1 of F's derivatives: those of q'' - M^-1 f as forms would
@@ -198,7 +199,7 @@ void jacobian_of_motion(void *context)
 	for (int i = 0; i < n; i++)
 		row[i] = residual_as_written(b->full, b->owner, i);
 	jacobian_of_rows(j, row);
-	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1 + n);
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1 + n + b->spec->count.multipliers);
 	int fixings = jacobian_point(j, fixing);
 	struct point *start = point_new(&b->collector, fixings, fixing);
 	point_at_values(start);
@@ -210,4 +211,149 @@ void jacobian_of_motion(void *context)
 		solve_rows(j, &b->full->mass[i], inverse[i], j->at.C);
 		solve_rows(j, &b->full->mass[i], inverse[i], j->at.K);
 	}
+}
+
+/* ---- M u + N(u) = f by Newton's method, from M u = f ---- */
+
+enum { TURNS = 6 };
+struct turning {                    /* M u + N(u) = f */
+	struct collector *c;
+	const struct linear_system *plain;
+	const struct curve *curve;
+	const struct node *node;
+	const struct form **answer; /* [column][row]: of M^-1 */
+	const struct form *(*u)[TURNS]; /* [column] */
+};
+
+static void list_curve(struct curve *curve, int n)
+{
+	for (int i = 0; i < n; i++) {
+		bool any = false;
+		if (curve->N[i]->terms)
+			*MORE(curve->row, curve->rows) = i;
+		for (int k = 0; k < n; k++)
+			any = any || curve->slope[k * n + i]->terms;
+		if (any)
+			*MORE(curve->column, curve->columns) = i;
+	}
+}
+
+static struct point *point_at_turn(const struct turning *g, int turn)
+{
+	const struct curve *curve = g->curve;
+	struct fixing *fixing = ARRAY(struct fixing, curve->columns);
+	for (int j = 0; j < curve->columns; j++) {
+		const struct basis *x = &g->plain->written->highest[curve->column[j]];
+		fixing[j] = (struct fixing){ .symbol = g->c->frame->coord[x->index], .coord = x->index,
+					     .order = x->order, .by = g->u[j][turn] };
+	}
+	return point_new(g->c, curve->columns, fixing);
+}
+
+/* 0; no number where the last turn still moved an unknown by more than 2^-25 of its size */
+static struct form *nothing_where_found(const struct turning *g, bool single)
+{
+	struct collector *c = g->c;
+	struct form *sum = NEW(struct form);
+	RATIONAL near = RATIO(1, 1), tiny = RATIO(1, 1);
+	mpq_div_2exp(near, near, single ? 20 : 50);
+	mpq_div_2exp(tiny, tiny, 100);
+	for (int j = 0; j < g->curve->columns; j++) {
+		const struct form *const *u = g->u[j];
+		struct form *square = NEW(struct form), *last = form_difference(u[TURNS - 1], u[TURNS - 2]);
+		for (int t = 0; t < TURNS; t++)
+			form_add_to(square, kept_product(c, g->node, u[t], u[t]), near);
+		square = form_difference(square, kept_product(c, g->node, last, last));
+		form_add_to(sum, kept_call(c, g->node, FN_SQRT, 1, &square), tiny);
+	}
+	return sum;
+}
+
+/* u = M^-1 (f - N(u)) for the unknowns of N alone: (1 + M^-1 N_u) u' = M^-1 (f - N + N_u u) */
+static void make_turn(const struct turning *g, int turn)
+{
+	const struct curve *curve = g->curve;
+	const int n = g->plain->n, columns = curve->columns;
+	struct collector *c = g->c;
+	struct point *there = point_at_turn(g, turn);
+	const struct form **M = ARRAY(const struct form *, columns * columns),
+			  **f = ARRAY(const struct form *, columns);
+	for (int i = 0; i < columns; i++) {
+		f[i] = g->u[i][0];
+		for (int j = 0; j < columns; j++)
+			M[i * columns + j] = form_number(i == j);
+		for (int k = 0; k < curve->rows; k++) {
+			const struct form *answer = g->answer[i * curve->rows + k];
+			const struct form *rest = form_at(there, curve->N[curve->row[k]]);
+			for (int j = 0; j < columns; j++) {
+				const struct form *slope =
+					form_at(there, curve->slope[curve->row[k] * n + curve->column[j]]);
+				rest = form_difference(rest, kept_product(c, g->node, slope, g->u[j][turn]));
+				M[i * columns + j] = form_sum(M[i * columns + j],
+							      kept_product(c, g->node, answer, slope), false);
+			}
+			f[i] = form_difference(f[i], kept_product(c, g->node, answer, rest));
+		}
+	}
+	const struct linear_system e = { columns, M, f, NULL };
+	for (int i = 0; i < columns; i++)
+		g->u[i][turn + 1] = kept_solution(c, g->node, &e, i);
+}
+
+static void make_answers(struct turning *g)
+{
+	const struct curve *curve = g->curve;
+	struct linear_system unit = *g->plain;
+	struct collector *c = g->c;
+	unit.written = NULL;
+	g->answer = ARRAY(const struct form *, curve->columns * curve->rows);
+	for (int i = 0; i < curve->columns; i++)
+		g->u[i][0] = kept_solution(c, g->node, &unit, curve->column[i]);
+	for (int k = 0; k < curve->rows; k++) {
+		const struct form **f = ARRAY(const struct form *, unit.n);
+		for (int i = 0; i < unit.n; i++)
+			f[i] = form_number(i == curve->row[k]);
+		unit.f = f;
+		for (int i = 0; i < curve->columns; i++)
+			g->answer[i * curve->rows + k] = kept_solution(c, g->node, &unit, curve->column[i]);
+	}
+}
+
+/* (M + N_u) u' = f - N + N_u u, of all unknowns */
+struct linear_system last_turn(struct collector *c, const struct node *node, const struct linear_system *plain,
+			       struct curve *curve, bool single)
+{
+	struct turning g = { .c = c, .plain = plain, .curve = curve, .node = node };
+	const int n = plain->n;
+	struct written_system *written = NEW(struct written_system);
+	const struct form **M = ARRAY(const struct form *, n * n), **f = ARRAY(const struct form *, n),
+			  **slope = ARRAY(const struct form *, n * n);
+	list_curve(curve, n);
+	g.u = (const struct form *(*)[TURNS])ARRAY(const struct form *, TURNS * curve->columns);
+	make_answers(&g);
+	for (int t = 0; t < TURNS - 1; t++)
+		make_turn(&g, t);
+	struct point *there = point_at_turn(&g, TURNS - 1);
+	for (int i = 0; i < n; i++)
+		f[i] = form_difference(plain->f[i], form_at(there, curve->N[i]));
+	for (int i = 0; i < n * n; i++) {
+		slope[i] = form_sum(plain->M[i], curve->slope[i], false);
+		M[i] = form_sum(plain->M[i], form_at(there, curve->slope[i]), false);
+	}
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < curve->columns; j++) {
+			const struct form *by = form_at(there, curve->slope[i * n + curve->column[j]]);
+			f[i] = form_sum(f[i], kept_product(c, node, by, g.u[j][TURNS - 1]), false);
+		}
+	f[0] = form_sum(f[0], nothing_where_found(&g, single), false);
+	*written = *plain->written;
+	written->slope = slope;
+	written->found = ARRAY(const struct form *, n);
+	const struct linear_system e = { n, M, f, written };
+	for (int j = 0; j < curve->columns; j++)
+		g.u[j][TURNS - 1] = kept_solution(c, node, &e, curve->column[j]);
+	there = point_at_turn(&g, TURNS - 1);
+	for (int i = 0; i < n; i++)
+		written->found[i] = form_at(there, curve->N[i]);
+	return e;
 }

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-enum { BITS = 256 };
-
 /* ---- the point ---- */
 
 static struct fixing *add_fixing(struct linearising *l, const struct symbol *symbol, int index, int order)
@@ -160,16 +158,34 @@ static void derive_masses(struct linearising *l)
 	}
 }
 
-/* That of a double, or of BITS bits where there are many more */
+/* That of a double, or not many more than 256 bits */
 static void round_value(mpq_ptr value, bool roughly)
 {
-	REAL rounded = WITH_BITS(BITS);
-	if (roughly) {
+	if (roughly)
 		mpq_set_d(value, mpq_get_d(value));
-	} else if (mpz_sizeinbase(mpq_numref(value), 2) + mpz_sizeinbase(mpq_denref(value), 2) > 4 * BITS) {
-		mpfr_set_q(rounded, value, MPFR_RNDN);
-		mpfr_get_q(value, rounded);
+	else
+		round_long(value);
+}
+
+/* Where Newton's method starts: 0, or what turns have found of those in which equations are not linear */
+static void start_highest(struct linearising *l)
+{
+	const struct segment_equations *s = l->b->full;
+	bool curved = false;
+	for (int i = 0; i < s->masses; i++)
+		curved = curved || s->mass[i].system.written->slope;
+	struct point *point = point_of(l);
+	for (int k = 0; k < l->rows; k++) {
+		mpq_ptr value = l->fixing[l->states + k].value;
+		const struct form *residual = k < l->n ? s->residual[l->b->owner[k]].form : NULL;
+		const struct basis highest = { .kind = BASIS_COORD, .index = k,
+					       .order = l->fixing[l->states + k].order };
+		mpq_set_ui(value, 0, 1);
+		if (curved)
+			value_at(l, point, residual ? form_difference(form_unit(highest), residual)
+						    : s->multiplier[k - l->n], value);
 	}
+	point_free(point);
 }
 
 /* Highest derivatives and multipliers at the point, into their fixings; false: it does not determine them */
@@ -180,8 +196,7 @@ bool solve_highest(struct linearising *l, bool roughly)
 	RATIONALS *A = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n)), *b = rationals((size_t)n);
 	if (!l->mass)
 		derive_masses(l);
-	for (int i = 0; i < n; i++)
-		mpq_set_ui(l->fixing[l->states + i].value, 0, 1);
+	start_highest(l);
 	struct point *point = point_of(l);
 	for (int i = 0; i < n; i++) {
 		value_at(l, point, accelerating(l, i), b[i]);
@@ -195,11 +210,10 @@ bool solve_highest(struct linearising *l, bool roughly)
 	if (!rational_inverse(n, A, inverse, &column))
 		return false;
 	for (int i = 0; i < n; i++) {
-		mpq_ptr sum = l->fixing[l->states + i].value;
+		mpq_ptr value = l->fixing[l->states + i].value;
 		for (int k = 0; k < n; k++)
-			rational_addmul(sum, inverse[i * n + k], b[k]);
-		mpq_neg(sum, sum);
-		round_value(sum, roughly);
+			rational_submul(value, inverse[i * n + k], b[k]);
+		round_value(value, roughly);
 	}
 	return true;
 }

@@ -414,7 +414,10 @@ static bool is_stiff(struct building *b)
 	struct model *model = b->model;
 	struct jacobian j = { .b = b, .damped = true, .state = model->initial };
 	mpq_init(j.t);
-	const bool moves = b->full->masses > 0 && !b->spec->count.multipliers, equation = b->collector.equation;
+	const bool equation = b->collector.equation;
+	bool moves = b->full->masses > 0 && !b->spec->count.multipliers;
+	for (int i = 0; i < b->full->masses; i++)
+		moves = moves || b->full->mass[i].system.written->slope;
 	b->collector.equation = moves;
 	bool known = moves ? silent_guard(jacobian_of_motion, &j)
 			   : silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);

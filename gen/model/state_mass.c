@@ -88,15 +88,14 @@ static const char *multiplier_within(const struct solving *w, const struct atom 
 	return name;
 }
 
-static _Noreturn void report_not_linear(const struct solving *w, const struct atom *atom)
+static _Noreturn void report_kink(const struct solving *w, const struct atom *atom)
 {
 	const char *text = text_between(atom->node->start, atom->node->end), *name = multiplier_within(w, atom);
 	if (name)
-		error(atom->node->start, "a force takes it times what is no multiplier; 'friction' takes its size",
-		      "'%s' is not linear in the multiplier '%s', which is solved for with accelerations", text, name);
-	error(atom->node->start,
-	      "equations are solved for them by elimination: they stand in sums, and times other factors",
-	      "'%s' is not linear in highest derivatives", text);
+		error(atom->node->start, "a force takes smooth functions of it; 'friction' takes its size",
+		      "'%s' has a kink in the multiplier '%s', which is solved for with accelerations", text, name);
+	error(atom->node->start, "smooth functions of them are solved for",
+	      "'%s' has a kink in highest derivatives", text);
 }
 
 static bool holds_highest(const struct solving *w, const struct form *form)
@@ -118,21 +117,40 @@ static const struct form *without_friction(const struct form *form)
 }
 
 /* Products and choices have them for operands; a condition on one, or a function of one, is not linear. */
-static void check_linear(const struct solving *w, const struct form *form)
+static bool is_linear_in_highest(const struct solving *w, const struct form *form)
 {
-	for (int i = 0; i < form->terms; i++) {
+	bool linear = true;
+	for (int i = 0; i < form->terms && linear; i++) {
 		const struct atom *a = form->term[i].basis.atom;
-		if (!a || !a->highest || is_friction(a))
-			continue;
 		int held = 0;
-		for (int k = 0; k < a->operands; k++) {
+		for (int k = 0; a && a->highest && !is_friction(a) && k < a->operands && linear; k++) {
 			bool holds = holds_highest(w, a->operand[k]), chooses = a->kind == ATOM_CHOOSE;
 			held += holds * (a->kind == ATOM_PRODUCT ? (int)a->exponent[k] : 1);
-			if (holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
-				      (!chooses && held > 1)))
-				report_not_linear(w, a);
-			check_linear(w, a->operand[k]);
+			linear = !(holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
+					     (!chooses && held > 1))) &&
+				 is_linear_in_highest(w, a->operand[k]);
 		}
+	}
+	return linear;
+}
+
+/* Terms that are linear in them */
+static struct form *linear_terms(const struct solving *w, const struct form *form)
+{
+	struct form *linear = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (is_linear_in_highest(w, form_unit(form->term[i].basis)))
+			form_add_basis(linear, form->term[i].basis, form->term[i].factor);
+	return linear;
+}
+
+static void check_smooth(const struct solving *w, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->b->collector.atoms));
+	for (const struct form_term **term = terms_within(without_friction(form), seen); *term; term++) {
+		const struct atom *a = (*term)->basis.atom;
+		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function > FN_ATAN2)))
+			report_kink(w, a);
 	}
 }
 
@@ -288,6 +306,30 @@ static void add_constraints(struct solving *w, int n, const int *order, int i, c
 	}
 }
 
+/* ---- equations that are not linear in highest derivatives, but for friction ---- */
+
+/* What a block's residuals hold that is not linear; NULL: nothing. It is taken out of them. */
+static struct curve *take_curve(struct solving *w, int n, const int *order, const struct form **F)
+{
+	struct curve *curve = NEW(struct curve);
+	bool any = false;
+	curve->N = ARRAY(const struct form *, n);
+	curve->slope = ARRAY(const struct form *, n * n);
+	for (int i = 0; i < n; i++) {
+		const struct form *all = F[i];
+		F[i] = linear_terms(w, all);
+		curve->N[i] = form_difference(all, F[i]);
+		any = any || curve->N[i]->terms;
+	}
+	for (int j = 0; j < n && any; j++) {
+		struct form **slope = form_derivatives(&w->b->collector, n, curve->N, false, order[j],
+						       highest_order(w->b, order[j]));
+		for (int i = 0; i < n; i++)
+			curve->slope[i * n + j] = slope[i];
+	}
+	return any ? curve : NULL;
+}
+
 static void solve_block(struct solving *w, int block)
 {
 	SCRATCH int *order = ARRAY(int, w->n);
@@ -299,20 +341,28 @@ static void solve_block(struct solving *w, int block)
 	for (int i = 0; i < n; i++) {
 		const int row = row_of(w, order[i]);
 		F[i] = residual_of(w, row);
-		f[i] = form_difference(NEW(struct form), at_rest(w->b, w->rest, F[i]));
-		for (int j = 0; j < n; j++)
-			M[i * n + j] = w->M[row * w->n + order[j]];
 		highest[i] = (struct basis){ .kind = BASIS_COORD, .index = order[i],
 					     .order = highest_order(w->b, order[i]) };
 		node = node ? node : node_of_row(w, row);
 	}
+	struct curve *curve = take_curve(w, n, order, F);
+	for (int i = 0; i < n; i++) {
+		f[i] = form_difference(NEW(struct form), at_rest(w->b, w->rest, F[i]));
+		for (int j = 0; j < n; j++)
+			M[i * n + j] = form_difference(w->M[row_of(w, order[i]) * w->n + order[j]],
+						       curve ? curve->slope[i * n + j] : form_number(0));
+	}
 	for (int i = 0; i < n && lacks_mass(w, n, order); i++)
 		add_constraints(w, n, order, i, M, f, F);
+	for (int i = 0; i < n && curve; i++)
+		F[i] = form_sum(F[i], curve->N[i], false);
 	struct written_system *written = NEW(struct written_system);
-	*written = (struct written_system){ n, highest, F };
-	const struct linear_system e = { n, M, f, written };
+	*written = (struct written_system){ n, highest, F, NULL, NULL };
+	const struct linear_system plain = { n, M, f, written },
+				   e = curve ? last_turn(&w->b->collector, node, &plain, curve, w->b->request->single)
+					     : plain;
 	w->b->model->equations.moving_mass = node;
-	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e, NULL };
+	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e, plain, NULL };
 	for (int i = 0; i < n; i++) {
 		struct form *solution = kept_solution(&w->b->collector, node, &e, i);
 		if (order[i] < w->coords)
@@ -326,7 +376,7 @@ static void solve_blocks(void *context)
 {
 	struct solving *w = context;
 	for (int i = 0; i < w->n; i++)
-		check_linear(w, residual_of(w, i));
+		check_smooth(w, residual_of(w, i));
 	for (int j = 0; j < w->n; j++)
 		find_column(w, j);
 	find_blocks(w);
@@ -405,7 +455,7 @@ static void check_mass_of(void *context)
 {
 	const struct starting *work = context;
 	const struct model *model = work->b->model;
-	const struct linear_system *system = &work->mass->system;
+	const struct linear_system *system = &work->mass->plain;
 	const int n = system->n;
 	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
 	int column;
@@ -414,6 +464,7 @@ static void check_mass_of(void *context)
 		if (!is_constant(entry))
 			return;
 		constant_value(&work->b->collector, entry, value[i]);
+		round_long(value[i]);
 	}
 	const struct energy *kinetic;
 	int coords = 0;

@@ -25,9 +25,10 @@ static void expand_state(struct sequencing *w, int state)
 static bool raise(struct expansion *x, int sequence, int top)
 {
 	struct sequence *s = sequence == NONE ? NULL : &x->sequence[sequence];
+	top = top > x->order ? x->order : top;
 	if (!s || top <= s->top)
 		return false;
-	s->top = top > x->order ? x->order : top;
+	s->top = top;
 	return true;
 }
 
@@ -61,7 +62,7 @@ static void find_tops(struct expansion *x, int states)
 		raise(x, x->column[i], x->column_top[i]);
 	for (bool changed = true; changed;) {
 		changed = false;
-		for (int i = 0; i < x->count; i++)
+		for (int i = x->count - 1; i >= 0; i--) /* most operands precede what is made of them */
 			changed |= raise_operands(x, &x->sequence[i]);
 	}
 }
@@ -200,6 +201,16 @@ static void find_extent(const struct step *step, struct expansion *x)
 
 /* ---- the whole ---- */
 
+/* What is solved for has one coefficient less than states have. */
+static int order_of_form(const struct sequencing *w, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->step->model->equations.atoms));
+	bool solved = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		solved = solved || ((*term)->basis.atom && (*term)->basis.atom->kind == ATOM_SOLUTION);
+	return w->x->order - solved;
+}
+
 /* Their arguments, and behind these columns what bounds a series but is no part of its error */
 static void place_unresolved(struct sequencing *w)
 {
@@ -207,7 +218,7 @@ static void place_unresolved(struct sequencing *w)
 	x->measured = x->columns;
 	for (int i = 0; i < x->unresolved_functions; i++) {
 		int sequence = sequence_of_form(w, x->unresolved[i].form);
-		x->unresolved[i].column = column_of_sequence(x, sequence, x->order);
+		x->unresolved[i].column = column_of_sequence(x, sequence, order_of_form(w, x->unresolved[i].form));
 	}
 }
 

@@ -56,6 +56,29 @@ static bool is_solution(const struct sequence *s)
 	return s->kind == SEQUENCE_SOLUTION || s->shifts;
 }
 
+/* The k-th of a function is what its derivative has at k - 1. */
+static bool follows_solution(const struct sequence *s, const bool *solved, const bool *behind)
+{
+	return s->kind != SEQUENCE_INTEGRAL ? is_solution(s) || is_any(solved, s)
+					    : s->state == NONE && is_any(behind, s);
+}
+
+static void find_solved(const struct expansion *x, bool *solved, bool *behind)
+{
+	for (bool changed = true; changed;) {
+		changed = false;
+		for (int i = 0; i < x->count; i++) {
+			const struct sequence *s = &x->sequence[i];
+			const bool rate = s->kind == SEQUENCE_RATE && !s->shifts;
+			const bool now = follows_solution(s, solved, behind);
+			const bool late = rate ? solved[s->a] : s->kind != SEQUENCE_INTEGRAL && is_any(behind, s);
+			changed = changed || now != solved[i] || late != behind[i];
+			solved[i] = now;
+			behind[i] = late;
+		}
+	}
+}
+
 /* Whether velocities are in it whose k-th has the one before of solutions */
 static bool mark_ahead(const struct expansion *x, const bool *solved, int index)
 {
@@ -126,7 +149,7 @@ static void find_gains(const struct expansion *x, const bool *depends, const boo
 	SCRATCH int *operand = NULL;
 	bool sum = s->kind == SEQUENCE_SUM || s->kind == SEQUENCE_INTEGRAL;
 	bool made = sum || s->kind == SEQUENCE_QUOTIENT || s->kind == SEQUENCE_ROOT || s->kind == SEQUENCE_POWER;
-	if (!made || !depends[index] || late[index] || is_any(late, s) || s->solved || s->ahead)
+	if (!made || !depends[index] || late[index] || is_any(late, s) || s->solved || s->behind || s->ahead)
 		return;
 	int operands = sequence_operands(s, &operand);
 	for (int i = 0; i < operands; i++)
@@ -200,12 +223,14 @@ static void schedule(const struct expansion *x)
 /* Sums before what they are in come first: operands are made before what is made of them, but for integrals. */
 void find_implicit(struct expansion *x)
 {
-	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false),
-		   *solved = made_of(x, is_solution, false);
+	const bool *depends = made_of(x, is_state, true), *late = made_of(x, is_late, false);
+	SCRATCH bool *solved = ARRAY(bool, x->count), *behind = ARRAY(bool, x->count);
+	find_solved(x, solved, behind);
 	find_ahead(x, solved);
 	for (int i = 0; i < x->count; i++) {
 		x->sequence[i].known = !depends[i];
-		x->sequence[i].solved = solved[i] && x->sequence[i].kind != SEQUENCE_SOLUTION;
+		x->sequence[i].behind = behind[i];
+		x->sequence[i].solved = solved[i] && !behind[i] && x->sequence[i].kind != SEQUENCE_SOLUTION;
 		if (x->sequence[i].kind != SEQUENCE_INTEGRAL)
 			find_gains(x, depends, late, i);
 	}

@@ -8,8 +8,6 @@
 
 #include <math.h>
 
-enum { UNKNOWN = -2 };                  /* beside TAPE_NONE: nothing */
-
 struct tape *tape_of_recurrences(const struct recurrences *r)
 {
 	return r->t;
@@ -115,7 +113,9 @@ void recurrence_add_term(struct recurrences *r, struct list *sum, struct list *l
 	if (term->kind == TERM_SEQUENCE) {
 		add(last, recurrence_scaled(r, factor, part(r, term->a, k)));
 	} else if (k == 0) {
-		add(sum, recurrence_scaled(r, factor, pair(r, term->a, 0, term->b, 0)));
+		tape_ref first = part(r, term->a, 0);
+		first = first == TAPE_NONE ? first : times(r->t, first, part(r, term->b, 0));
+		add(sum, recurrence_scaled(r, factor, first));
 	} else {
 		add_old(r, sum, term->a, term->b, k, factor);
 		add(last, highest(r, part(r, term->a, k), square ? twice(factor) : factor, term->b));
@@ -180,6 +180,8 @@ static tape_ref quotient(struct recurrences *r, int sequence, const struct seque
 {
 	struct list sum = { 0 };
 	tape_ref above = s->a == NONE ? TAPE_NONE : part(r, s->a, k);
+	if (k == 0)
+		return over(r, sequence, above);
 	add(&sum, times(r->t, recurrence(r, sequence, 0), part(r, s->b, k)));
 	if (in_loop(k))
 		add(&sum, summed(r, STAGE_QUOTIENT, sequence, s->b, k, 0));
@@ -248,6 +250,7 @@ static tape_ref early(struct recurrences *r, int sequence, int k)
 /* ---- linear equations, M_0 factored once ---- */
 
 static tape_ref provisional_ahead(struct recurrences *r, int sequence, int k);
+static tape_ref provisional_behind(struct recurrences *r, int sequence, int k);
 
 static tape_ref shifted(struct recurrences *r, const struct sequence *s, int k, part_of *part)
 {
@@ -267,9 +270,24 @@ static tape_ref provisional(struct recurrences *r, int sequence, int k)
 		return recurrence(r, sequence, k);
 	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = s->kind == SEQUENCE_RATE     ? shifted(r, s, k, provisional_ahead)
-		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, provisional)
-						    : made_of(r, sequence, s, k, provisional);
+		*ref = s->kind == SEQUENCE_RATE       ? shifted(r, s, k, provisional_ahead)
+		       : s->kind == SEQUENCE_CHOICE   ? choice(r, s, k, provisional)
+		       : s->kind == SEQUENCE_INTEGRAL ? made_of(r, sequence, s, k - 1, provisional_behind)
+						      : made_of(r, sequence, s, k, provisional);
+	return *ref;
+}
+
+/* The k-th where the next of solutions is 0 */
+static tape_ref provisional_behind(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	tape_ref *ref = recurrence_place(r, r->early, sequence, k);
+	if (!s->behind)
+		return recurrence(r, sequence, k);
+	recurrence_check_turn(r, sequence, k);
+	if (*ref == UNKNOWN)
+		*ref = s->kind == SEQUENCE_RATE ? shifted(r, s, k, provisional)
+						: made_of(r, sequence, s, k, provisional_behind);
 	return *ref;
 }
 
@@ -323,14 +341,30 @@ static tape_ref update_ahead(struct recurrences *r, int sequence, int k)
 }
 
 /* (a - c_0 b)/b_0, a/(2 c_0), exponent c_0 a/a_0, of what changes by a and b */
-static tape_ref update_of_ratio(struct recurrences *r, int sequence, const struct sequence *s, int k)
+static tape_ref update_of_ratio(struct recurrences *r, int sequence, const struct sequence *s, int k,
+				part_of *change_of)
 {
-	tape_ref a = s->a == NONE ? TAPE_NONE : update(r, s->a, k);
+	tape_ref a = s->a == NONE ? TAPE_NONE : change_of(r, s->a, k);
 	if (s->kind == SEQUENCE_QUOTIENT)
-		a = less(r->t, a, times(r->t, recurrence(r, sequence, 0), update(r, s->b, k)));
+		a = less(r->t, a, times(r->t, recurrence(r, sequence, 0), change_of(r, s->b, k)));
 	if (s->kind == SEQUENCE_POWER)
 		a = tape_scaled(r->t, recurrence_rounded(s->exponent), times(r->t, a, recurrence(r, sequence, 0)));
 	return over(r, sequence, a);
+}
+
+/* What the next of solutions adds to the k-th */
+static tape_ref update_behind(struct recurrences *r, int sequence, int k)
+{
+	const struct sequence *s = sequence_of(r, sequence);
+	tape_ref *ref = recurrence_place(r, r->update, sequence, k);
+	if (!s->behind)
+		return TAPE_NONE;
+	recurrence_check_turn(r, sequence, k);
+	if (*ref == UNKNOWN)
+		*ref = s->kind == SEQUENCE_RATE  ? shifted(r, s, k, update)
+		       : s->kind == SEQUENCE_SUM ? update_of_sum(r, s, k, update_behind)
+						 : update_of_ratio(r, sequence, s, k, update_behind);
+	return *ref;
 }
 
 static tape_ref update(struct recurrences *r, int sequence, int k)
@@ -343,10 +377,11 @@ static tape_ref update(struct recurrences *r, int sequence, int k)
 		return TAPE_NONE;
 	recurrence_check_turn(r, sequence, k);
 	if (*ref == UNKNOWN)
-		*ref = s->kind == SEQUENCE_RATE     ? shifted(r, s, k, update_ahead)
-		       : s->kind == SEQUENCE_CHOICE ? choice(r, s, k, update)
-		       : s->kind == SEQUENCE_SUM    ? update_of_sum(r, s, k, update)
-						    : update_of_ratio(r, sequence, s, k);
+		*ref = s->kind == SEQUENCE_RATE       ? shifted(r, s, k, update_ahead)
+		       : s->kind == SEQUENCE_CHOICE   ? choice(r, s, k, update)
+		       : s->kind == SEQUENCE_SUM      ? update_of_sum(r, s, k, update)
+		       : s->kind == SEQUENCE_INTEGRAL ? update_of_sum(r, s, k - 1, update_behind)
+						      : update_of_ratio(r, sequence, s, k, update);
 	return *ref;
 }
 
@@ -547,43 +582,4 @@ tape_ref recurrence(struct recurrences *r, int sequence, int k)
 	if (*ref == TAPE_NONE && k == 0)
 		*ref = tape_number(r->t, 0);
 	return *ref;
-}
-
-tape_ref recurrence_number(struct recurrences *r, int sequence, int k)
-{
-	tape_ref ref = recurrence(r, sequence, k);
-	return ref == TAPE_NONE ? tape_number(r->t, 0) : ref;
-}
-
-void recurrence_set(struct recurrences *r, const char *target, int sequence, int k)
-{
-	tape_set(r->t, target, recurrence_number(r, sequence, k), 10, NULL);
-}
-
-static tape_ref *unmade(int count, tape_ref what)
-{
-	tape_ref *list = ARRAY(tape_ref, count + 1);
-	for (int i = 0; i < count; i++)
-		list[i] = what;
-	return list;
-}
-
-struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names)
-{
-	struct recurrences *r = NEW(struct recurrences);
-	int all = x->count * (x->order + 2);
-	*r = (struct recurrences){ .step = step, .x = x, .names = names, .t = tape_new(),
-				   .lines = names.looped ? x->lines : NULL,
-				   .made = unmade(all, UNKNOWN), .early = unmade(all, UNKNOWN),
-				   .update = unmade(all, UNKNOWN),
-				   .helper = unmade(x->count, TAPE_NONE), .size = unmade(x->count, TAPE_NONE) };
-	r->gain = ARRAY(tape_ref *, x->count);
-	r->solved = ARRAY(struct solved, x->equations + 1);
-	for (int i = 0; i < x->count; i++) {
-		const struct linear_equations *e = x->sequence[i].equations;
-		r->gain[i] = unmade(x->sequence[i].gains, TAPE_NONE);
-		if (e)
-			r->solved[e->number].x = unmade(e->n * (x->order + 2), UNKNOWN);
-	}
-	return r;
 }

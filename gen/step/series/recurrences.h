@@ -5,6 +5,7 @@
 
 #include "inner.h"
 
+enum { UNKNOWN = -2 };                  /* beside TAPE_NONE: nothing */
 struct recurrences {
 	const struct step *step;
 	const struct expansion *x;

@@ -57,6 +57,7 @@ struct sequence {
 	int top;                    /* the last that something reads and that is not 0; -1: none is read */
 	bool known;                 /* it depends on time and inputs alone */
 	bool solved;                /* its k-th depends on the k-th of a solution */
+	bool behind;                /* its k-th depends on the (k+1)-th of a solution: a rate, what is made of one */
 	bool shifts;                /* a rate of what is ahead, of which a solution is made */
 	bool ahead;                 /* such a rate reads it: its (k+1)-th depends on the k-th of a solution */
 	/* The k-th, of an integral the (k+1)-th, is for k >= 1 an early part + sum over these of factors times their

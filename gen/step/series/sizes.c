@@ -98,3 +98,44 @@ tape_ref recurrence_full_size(struct recurrences *r, int sequence)
 	all = all == TAPE_NONE ? tape_number(t, 0) : all;
 	return r->size[sequence] = recurrence_named(r, all, sequence, "size");
 }
+
+/* ---- what is set; all of them, none made yet ---- */
+
+tape_ref recurrence_number(struct recurrences *r, int sequence, int k)
+{
+	tape_ref ref = recurrence(r, sequence, k);
+	return ref == TAPE_NONE ? tape_number(r->t, 0) : ref;
+}
+
+void recurrence_set(struct recurrences *r, const char *target, int sequence, int k)
+{
+	tape_set(r->t, target, recurrence_number(r, sequence, k), 10, NULL);
+}
+
+static tape_ref *unmade(int count, tape_ref what)
+{
+	tape_ref *list = ARRAY(tape_ref, count + 1);
+	for (int i = 0; i < count; i++)
+		list[i] = what;
+	return list;
+}
+
+struct recurrences *recurrences_new(const struct step *step, const struct expansion *x, struct series_names names)
+{
+	struct recurrences *r = NEW(struct recurrences);
+	int all = x->count * (x->order + 2);
+	*r = (struct recurrences){ .step = step, .x = x, .names = names, .t = tape_new(),
+				   .lines = names.looped ? x->lines : NULL,
+				   .made = unmade(all, UNKNOWN), .early = unmade(all, UNKNOWN),
+				   .update = unmade(all, UNKNOWN),
+				   .helper = unmade(x->count, TAPE_NONE), .size = unmade(x->count, TAPE_NONE) };
+	r->gain = ARRAY(tape_ref *, x->count);
+	r->solved = ARRAY(struct solved, x->equations + 1);
+	for (int i = 0; i < x->count; i++) {
+		const struct linear_equations *e = x->sequence[i].equations;
+		r->gain[i] = unmade(x->sequence[i].gains, TAPE_NONE);
+		if (e)
+			r->solved[e->number].x = unmade(e->n * (x->order + 2), UNKNOWN);
+	}
+	return r;
+}

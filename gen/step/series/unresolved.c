@@ -151,6 +151,7 @@ static void find_in_atom(struct finding *f, const struct atom *atom)
 		f->looks = true;
 }
 
+/* Of turns of Newton's method the first coefficients alone are read: what is solved for follows its residuals. */
 static void find_in_form(struct finding *f, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {
@@ -158,10 +159,13 @@ static void find_in_form(struct finding *f, const struct form *form)
 		if (!atom || f->seen[atom->index])
 			continue;
 		f->seen[atom->index] = true;
-		if (atom->time || atom->state || atom->velocity || atom->input)
+		if (!atom->highest && (atom->time || atom->state || atom->velocity || atom->input))
 			find_in_atom(f, atom);
-		for (int k = 0; k < atom->operands; k++)
-			find_in_form(f, atom->operand[k]);
+		const struct written_system *written = atom->written && atom->written->slope ? atom->written : NULL;
+		for (int k = 0; k < (written ? written->rows : atom->operands); k++)
+			find_in_form(f, written ? written->residual[k] : atom->operand[k]);
+		for (int k = 0; written && k < written->rows; k++)
+			find_in_form(f, written->found[k]);
 	}
 }
 
