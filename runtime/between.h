@@ -24,7 +24,7 @@ typedef struct PL(piece) { /* a part of a step */
     int segment, parts;
 #if PL_SWITCHING_FUNCTIONS > 0
     PL(contact) *contact;
-    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)];
+    real work[PL_EVENT_WORK(PL_ORDER, PL_HELD, PL_STATES)];
     int splits;
 #endif
 #if PL_CONTACTS

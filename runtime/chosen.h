@@ -7,6 +7,7 @@
  *     PL(contact)                with members crossings, crossing, total, interval, last, placed
  *     PL_SWITCHING_FUNCTIONS, PL_ORDER   that choose formulas; of their series, 0: there is none, and no PL(locate)
  *     PL_CONTACTS                1: impacts, contacts at rest, friction have functions of their own
+ *     PL_HELD                    so many of these may be held
  *     PL_REGIONS                 1: the regions are numbered
  *     PL_WAY                     beside contacts, if what is watched goes by polynomials: their degree, PL(along)
  *     PL_MOVED                   so many columns of derivatives are among the states: member doubt of PL(contact)

@@ -42,6 +42,7 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_SWEEPS = 1000, LAST = 6 };
 #define TOGETHER BRIEF
 #define HANGING (8 * MOST * MOST)
 #define IN_DOUBT 0
+#define ROUNDS 1 /* states are rounded, not enclosed */
 #endif
 #define DEEP 64
 
@@ -80,10 +81,11 @@ static real press_of(const contacts *m, const instant *at, int k);
 static real speed_of_met(const contacts *m, instant *at, int k);
 static real least_speed(const contacts *m, const instant *at, real least);
 
-/* The state by the jump of impact k; by that with restitution 0; without what rounding has left of the way to it; what
- * is held is put where it is held */
+/* The state by the jump of impact k; a set, as bits, by impacts with restitution 0, which keep momentum, until what is
+ * left of their speeds is nothing to speak of; without what rounding has left of the way to it; what is held is put
+ * where it is held */
 static void jump(const contacts *m, instant *at, int k);
-static void stop(const contacts *m, instant *at, int k);
+static void stop_all(const contacts *m, instant *at, uint32_t set);
 static void put_on(const contacts *m, instant *at, int k);
 static void keep(const contacts *m, instant *at);
 
@@ -100,6 +102,11 @@ static void say(instant *at, int status);
 /* Whether what rests there is pressed, by more than rounding */
 static int is_pressed(const contacts *m, const instant *at, int k);
 
+#ifdef ROUNDS
+/* The sizes of what the speed of bounce k is summed from, and of what forces do to it in this time [s] */
+static real speed_terms(const contacts *m, const instant *at, int k, real along);
+#endif
+
 /* Those at rest, at most MOST; the interval of one before this instant */
 static int find_resting(const contacts *m, const instant *at, resting *found);
 static int interval_before(const contacts *m, const instant *at, int expression);
@@ -107,6 +114,11 @@ static int interval_before(const contacts *m, const instant *at, int expression)
 /* Whether all of them agree with these intervals of theirs, what is held is not let go, what is not is: 2; 1: it hangs
  * in the balance.  May leave them there, not renewed. */
 static int agrees(const contacts *m, instant *at, const resting *r, int count, const int *interval);
+
+#ifndef RESTING
+/* The state by the jump of impact k with restitution 0 */
+static void stop(const contacts *m, instant *at, int k);
+#endif
 
 #ifdef RESTING
 /* On which side of where it is held one of those at rest belongs, the others as they are: -1, 0, 1; hangs: in the
@@ -210,6 +222,24 @@ static int touches(const contacts *m, const instant *at, int k)
     return touches_by(m, at, k, 0);
 }
 
+#ifdef ROUNDS
+/* The most that rounding in a step does to the guard of any bounce.  All of them count: of balls in a row those that
+ * lie still have places and speeds of the size of rounding, which say nothing of how it came about. */
+static real rounding_of_places(const contacts *m, const instant *at)
+{
+    real largest = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        real noise;
+        if (rest_of(m, k) >= 0) {
+            (void)depth(m, at, k, &noise);
+            largest = larger(largest, noise + m->h * noise_of(speed_terms(m, at, k, m->h)));
+        }
+    }
+    return largest;
+}
+#endif
+
 /* Whether a bounce stops a switching function that would go this way */
 static int is_stopped(const contacts *m, const instant *at, int expression, int way)
 {
@@ -266,16 +296,10 @@ static uint32_t seat(const contacts *m, instant *at, uint32_t set)
     return laid;
 }
 
-/* Those of a set, as bits, come to rest together and with those that do, as far as they all can: by impacts with
- * restitution 0, which keep momentum, until what is left of their speeds is nothing to speak of.  Returns those that
- * rest now. */
-static uint32_t lay(const contacts *m, instant *at, uint32_t set)
+#ifndef RESTING
+static void stop_all(const contacts *m, instant *at, uint32_t set)
 {
-    uint32_t laid;
     int k, sweeps, moving = 1;
-    for (k = 0; k < m->impacts; k++) {
-        set |= (uint32_t)(rest_of(m, k) >= 0 && rests(m, at, k)) << k;
-    }
     for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
         moving = 0;
         for (k = 0; k < m->impacts; k++) {
@@ -286,6 +310,19 @@ static uint32_t lay(const contacts *m, instant *at, uint32_t set)
             }
         }
     }
+}
+#endif
+
+/* Those of a set, as bits, come to rest together and with those that do, as far as they all can.  Returns those that
+ * rest now. */
+static uint32_t lay(const contacts *m, instant *at, uint32_t set)
+{
+    uint32_t laid;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        set |= (uint32_t)(rest_of(m, k) >= 0 && rests(m, at, k)) << k;
+    }
+    stop_all(m, at, set);
     laid = seat(m, at, set);
     keep(m, at);
     return laid;
@@ -358,7 +395,9 @@ static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
             continue;
         }
         slow = larger(least_speed(m, at, slow), CALM * chain->most);
-        if (k != begins && speed <= slow) {
+        if (speed <= slow && (k != begins || (slow > 0 && rest_of(m, k) >= 0))) {
+            met |= (uint32_t)1 << k;
+            begins = k == begins ? -1 : begins;
             calms = 1;
             continue;
         }

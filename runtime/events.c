@@ -25,6 +25,14 @@ static void set_freed(const pl_events *m, pl_instant *at, int hold, int up)
     at->freed = hold;
 }
 
+/* Whether a bounce is beyond its guard by no more than what those that it touches have moved it, and on its way back */
+static int is_parting(const pl_events *m, const pl_instant *at, int k)
+{
+    real noise;
+    return k >= 0 && rest_of(m, k) >= 0 && speed_of(m, at, k) < 0 && depth(m, at, k, &noise) > noise &&
+           depth(m, at, k, &noise) <= DEEP * rounding_of_places(m, at);
+}
+
 /* A switching function outside of its interval, or what is held beyond what can */
 static int has_left(const pl_events *m, pl_instant *at)
 {
@@ -38,7 +46,7 @@ static int has_left(const pl_events *m, pl_instant *at)
             const int k = at->interval[i] - !up;
             real off, noise;
             if (hold >= 0 && (up ? m->hold[hold].up : m->hold[hold].down) >= 0) {
-                const column w = watched(m, at, up ? m->hold[hold].up : m->hold[hold].down);
+                const column w = pull_of(m, at, hold, up);
                 if (certain(&w) > 0) {
                     set_freed(m, at, hold, up);
                     return 1;
@@ -48,21 +56,13 @@ static int has_left(const pl_events *m, pl_instant *at)
                 continue;
             }
             off = off_start(&e, b[k], &noise);
-            if ((up ? off : -off) > noise) {
+            if ((up ? off : -off) > noise && !is_parting(m, at, impact_at(m, i, k, up))) {
                 set_event(m, at, i, k, up);
                 return 1;
             }
         }
     }
     return 0;
-}
-
-/* The sizes of what the first two derivatives of a guard are summed from, over a piece */
-static real terms_behind(const pl_events *m, const pl_instant *at, const pl_event_impact *p, real end)
-{
-    const pl_hold *h = &m->hold[p->hold];
-    const column speed = watched(m, at, p->speed), pull = watched(m, at, p->upward ? h->down : h->up);
-    return m->h * end * (speed.terms + m->h * end * pull.terms);
 }
 
 /* What has just been let go at this breakpoint may be driven back by what the time of that is off: no sticking if it
@@ -77,10 +77,10 @@ static void pass_brief(beyond *f, real behind, real along)
 }
 
 /* Where a column first rises beyond b, or with sign -1 falls below it, before *first; last: that was the last event;
- * behind: where it has just left it the sizes of what its first two derivatives are summed from; else below 0; end,
- * along: how far, in the unit of time of c and in h */
-static int look(const column *e, real b, int sign, int last, real behind, real end, real along, real *first,
-                int *splits, real *work)
+ * behind: where it has just left it the sizes of what its first two derivatives are summed from; else below 0;
+ * parting: it has; end, along: how far, in the unit of time of c and in h */
+static int look(const column *e, real b, int sign, int last, real behind, int parting, real end, real along,
+                real *first, int *splits, real *work)
 {
     beyond f;
     real s;
@@ -88,8 +88,8 @@ static int look(const column *e, real b, int sign, int last, real behind, real e
     f.degree = e->m->degree < 3 ? 3 : e->m->degree;
     f.coefficient = work + f.degree + 1;
     rescale(e, end, work);
-    if (behind >= 0 && (real)sign * work[1] < 0 &&
-        magnitude(work[0] - b) <= noise_of(e->terms + magnitude(b) + behind)) {
+    if (parting || (behind >= 0 && (real)sign * work[1] < 0 &&
+                    magnitude(work[0] - b) <= noise_of(e->terms + magnitude(b) + behind))) {
         int k;
         for (k = 0; k <= f.degree; k++) {
             work[k] *= (real)sign;
@@ -123,12 +123,11 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
         const int hold = hold_of(m, i, at->interval[i]);
         for (up = 0; up < 2; up++) {
             const int k = at->interval[i] - !up;
-            const int watch = hold < 0 ? -1 : up ? m->hold[hold].up : m->hold[hold].down;
             int starting, last;
             real behind;
-            if (watch >= 0) {
-                const column w = watched(m, at, watch);
-                if (look(&w, 0, 1, 0, -1, end, along, &first, splits, at->work)) {
+            if (hold >= 0 && (up ? m->hold[hold].up : m->hold[hold].down) >= 0) {
+                const column w = pull_of(m, at, hold, up);
+                if (look(&w, 0, 1, 0, -1, 0, end, along, &first, splits, at->work)) {
                     any = 1;
                     set_freed(m, at, hold, up);
                 }
@@ -138,10 +137,11 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
             }
             starting = impact_at(m, i, k, up);
             behind = starting >= 0 && m->impact[starting].hold >= 0
-                         ? m->impact[starting].per * terms_behind(m, at, &m->impact[starting], end)
+                         ? m->impact[starting].per * m->h * end * speed_terms(m, at, starting, m->h * end)
                          : -1;
             last = at->last->expression == i && at->last->breakpoint == k;
-            if (look(&e, b[k], up ? 1 : -1, last, behind, end, along, &first, splits, at->work)) {
+            if (look(&e, b[k], up ? 1 : -1, last, behind, is_parting(m, at, starting), end, along, &first, splits,
+                     at->work)) {
                 any = 1;
                 set_event(m, at, i, k, up);
             } else if (starting >= 0 && m->moved != NULL) {
@@ -183,8 +183,7 @@ static int pass(const pl_events *m, pl_instant *at)
     *at->last = e;
     renew(m, at);
     if (hold_of(m, e.expression, *interval) >= 0) {
-        put_back(m, at, hold_of(m, e.expression, *interval));
-        keep(m, at); /* what is held with it, before it is let go */
+        keep(m, at); /* with what is held with it, before it is let go */
     }
     if (begins >= 0) {
         acted = apply_impacts(m, at, begins);
@@ -264,25 +263,28 @@ static real breakpoint_of(const pl_events *m, const pl_event_impact *p)
 }
 
 /* Whether a switching function is beyond the guard of this bounce, s on, by more than rounding and `least` */
-static int is_beyond(const pl_events *m, const pl_instant *at, const pl_event_impact *p, real s, real least)
+static int is_beyond(const pl_events *m, const pl_instant *at, int bounce, real s, real least)
 {
+    const pl_event_impact *p = &m->impact[bounce];
     const column e = column_of(m->switching, at->c, at->terms, p->expression);
     const real b = breakpoint_of(m, p);
-    real value = 0, terms = 0;
+    real value = 0, terms = 0, off;
     int k;
     for (k = m->switching->degree; k >= 0; k--) {
         value = value * s + column_at(&e, k);
         terms = terms * s + magnitude(column_at(&e, k));
     }
-    terms += e.terms + magnitude(b) + p->per * terms_behind(m, at, p, s);
-    return (p->upward ? value - b : b - value) > DEEP * noise_of(terms) + p->per * least + TINY;
+    terms += e.terms + magnitude(b) + p->per * m->h * s * speed_terms(m, at, bounce, m->h * s);
+    off = p->upward ? value - b : b - value;
+    least *= p->per;
+    return off > DEEP * noise_of(terms) + least + TINY && off > DEEP * p->per * rounding_of_places(m, at) + least;
 }
 
 int pl_events_places(const pl_events *m, const pl_instant *at, real s, real least)
 {
     int k, status = 0;
     for (k = 0; k < m->impacts; k++) {
-        status |= is_before(m, at, k) && is_beyond(m, at, &m->impact[k], s, least) ? PL_PENETRATED : 0;
+        status |= is_before(m, at, k) && is_beyond(m, at, k, s, least) ? PL_PENETRATED : 0;
     }
     return status;
 }

@@ -96,7 +96,7 @@ typedef struct pl_instant {
     const void *from;
     PL_REAL *y, *low;  /* the states and their low parts, which are 0 after an assignment */
     PL_REAL *c, *terms;
-    PL_REAL *work;      /* PL_SERIES_SWITCHING_WORK entries */
+    PL_REAL *work;      /* PL_EVENT_WORK entries; where nothing happens PL_SERIES_SWITCHING_WORK */
     PL_REAL unit;       /* the unit of time of c, in h */
     int *interval;      /* of each switching function */
     uint64_t *total;    /* number of crossings since the start */

@@ -331,24 +331,6 @@ void pl_guards_change(const pl_guards *m, real time, real *x, pl_contact *c, pl_
     decide_anew(m, &at, 1);
 }
 
-/* The most that rounding in a step does to the guard of any bounce.  All of them count: of balls in a row those that
- * lie still have places and speeds of the size of rounding, which say nothing of how it came about. */
-static real rounding_of_places(const pl_guards *m, const instant *at)
-{
-    const int n = m->size;
-    real largest = 0;
-    int k;
-    pl_multiply(n, n, matrix_now(m, at), at->x, at->work);
-    for (k = 0; k < m->impacts; k++) {
-        const real *speed = m->speed + (ptrdiff_t)k * n;
-        real noise;
-        (void)depth(m, at, k, &noise);
-        noise += m->h * noise_of(sizes(n, speed, at->x) + m->h * sizes(n, speed, at->work));
-        largest = larger(largest, noise);
-    }
-    return largest;
-}
-
 /* What is beyond the guard of a bounce by more than rounding is reported. */
 static void check_places(const pl_guards *m, const instant *at)
 {

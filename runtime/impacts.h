@@ -366,6 +366,13 @@ static real speed_of(const pl_guards *m, const instant *at, int k)
     return magnitude(speed) <= noise_of(sizes(m->size, row, at->x) + m->impact[k].amplitude) ? 0 : speed;
 }
 
+static real speed_terms(const pl_guards *m, const instant *at, int k, real along)
+{
+    const real *row = m->speed + (ptrdiff_t)k * m->size;
+    pl_multiply(m->size, m->size, matrix_now(m, at), at->x, at->work);
+    return sizes(m->size, row, at->x) + along * sizes(m->size, row, at->work);
+}
+
 static real speed_of_met(const pl_guards *m, instant *at, int k)
 {
     return speed_of(m, at, k);

@@ -22,7 +22,7 @@ static int PL(begin_part)(PL(piece) *p, const real y[PL_STATES], real c[PL_WAY +
 static real PL(meets)(PL(piece) *p, real c[PL_WAY + 1][PL_TERMS], const real d[2][PL_TERMS],
                       const real terms[PL_TERMS], const real *size)
 {
-    real work[PL_SERIES_SWITCHING_WORK(3)];
+    real work[PL_EVENT_WORK(3, PL_HELD, PL_STATES)];
     PL(make_cubics)(c, d, *size);
     p->found = p->contact->last;
     return pl_series_switching_next(&PL(passing), c[0], terms, p->contact->interval, *size, &p->splits, &p->found,

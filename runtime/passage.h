@@ -31,6 +31,28 @@ static void PL(values_here)(const PL_TYPE *s, const real start[], const real slo
     PL(watch)(known, s->contact.interval, s->start, c[0], terms);
 }
 
+#if PL_CONTACTS
+/* All states are solved for at once: what rounding makes of that grows with their number, and does not heed which contact
+ * bears much, and which none. */
+static void PL(level_pulls)(real terms[PL_TERMS])
+{
+    const pl_events *const m = &PL(events);
+    real most = 0;
+    int i, level;
+    for (level = 0; level < 2; level++) {
+        for (i = 0; i < 2 * m->impacts; i++) {
+            const pl_hold *const h = m->impact[i / 2].hold < 0 ? NULL : &m->hold[m->impact[i / 2].hold];
+            const int watch = h == NULL ? -1 : i % 2 ? h->up : h->down;
+            real *const size = &terms[PL_SWITCHING_FUNCTIONS + (watch < 0 ? 0 : watch)];
+            if (watch >= 0) {
+                most = *size > most ? *size : most;
+                *size = level ? 8 * PL_STATES * most : *size;
+            }
+        }
+    }
+}
+#endif
+
 /* ... along a step, of which known has what is known at its nodes: polynomials through their values there and at the
  * nodes */
 static void PL(values_along)(const PL_TYPE *s, const real start[], const real slope[],
@@ -47,6 +69,7 @@ static void PL(values_along)(const PL_TYPE *s, const real start[], const real sl
         PL(add_node)(PL_TERMS, PL_WAYS, k, value, c[0]);
     }
 #if PL_CONTACTS
+    PL(level_pulls)(terms);
     PL(guards_along)(s->size * PL_H, c);
 #endif
 }
@@ -76,7 +99,7 @@ static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 typedef struct PL(meeting) { /* where the next internal step starts */
     struct PL_TYPE *s;
     const real *start, *slope;
-    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_SERIES_SWITCHING_WORK(PL_EVENT_ORDER)];
+    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_EVENT_WORK(PL_EVENT_ORDER, PL_HELD, PL_STATES)];
     pl_instant at;
 #if PL_MOVED
     real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];

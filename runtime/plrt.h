@@ -391,6 +391,7 @@ enum { PL_PEAK_SPACE = 6 };
 #define PL_SWITCHING_COMPENSATED_WORK(size, switches, degree) (PL_SWITCHING_WORK(size, switches, degree) + 2 * (size))
 #define PL_MOVED_WORK(states, columns) (2 * (states) + 2 * (columns))
 #define PL_SERIES_SWITCHING_WORK(degree) (2 * ((degree) < 3 ? 4 : (degree) + 1))
+#define PL_EVENT_WORK(degree, holds, states) (PL_SERIES_SWITCHING_WORK(degree) + (holds) * ((holds) + 1) + (states))
 #define PL_VARIATION_WORK(size, degree) (((degree) + 4) * (size))
 #define PL_GUARDS_WORK(size, degree) (((degree) + 1) * ((size) + 2) + 11 * (size))
 #define PL_GUARDS_COMPENSATED_WORK(size, degree) (PL_GUARDS_WORK(size, degree) + 2 * (size))

@@ -44,6 +44,24 @@ static real certain(const column *w)
     return magnitude(value) <= noise_of(w->terms) + TINY ? 0 : value;
 }
 
+static real speed_terms(const pl_events *m, const pl_instant *at, int k, real along)
+{
+    const pl_event_impact *p = &m->impact[k];
+    const pl_hold *h = &m->hold[p->hold];
+    const column speed = watched(m, at, p->speed), pull = watched(m, at, p->upward ? h->down : h->up);
+    return speed.terms + along * pull.terms;
+}
+
+/* What lets go of a hold to this side; of a contact what over h does not show in its speed is rounding, too: where
+ * states pass 0 it is that of the way there. */
+static column pull_of(const pl_events *m, const pl_instant *at, int hold, int up)
+{
+    const int impact = m->hold[hold].impact;
+    column w = watched(m, at, up ? m->hold[hold].up : m->hold[hold].down);
+    w.terms += impact < 0 ? 0 : speed_terms(m, at, impact, 0) / m->h;
+    return w;
+}
+
 static int is_still(const pl_events *m, const pl_instant *at, int watch)
 {
     const column w = watched(m, at, watch);
@@ -193,24 +211,111 @@ static int is_none(const pl_events *m, const pl_instant *at, int watch)
     return certain(&w) >= 0 && certain(&w) <= 0;
 }
 
+/* What is 0 of a hold, but for rounding: its velocity, or the place of its contact; less so much of it */
+static int watch_of(const pl_events *m, int hold, int place)
+{
+    return place ? m->impact[m->hold[hold].impact].place : m->hold[hold].velocity;
+}
+
+static void take_hold(const pl_events *m, pl_instant *at, int hold, int place, real times)
+{
+    if (place) {
+        take(m, at, m->hold[hold].impact, m->place_back, m->place_watch, times);
+    } else {
+        take(m, at, hold, m->back, m->back_watch, times);
+    }
+}
+
 /* Whether what is held has moved by more than rounding */
 static int is_slack(const pl_events *m, const pl_instant *at, int hold)
 {
-    const pl_hold *h = &m->hold[hold];
-    return !is_none(m, at, h->velocity) || (h->impact >= 0 && !is_none(m, at, m->impact[h->impact].place));
+    return !is_none(m, at, watch_of(m, hold, 0)) || (m->hold[hold].impact >= 0 && !is_none(m, at, watch_of(m, hold, 1)));
 }
 
-/* Puts what is held where it is held, but for rounding: a place that is there stays, for others are held by it. */
-static void put_back(const pl_events *m, pl_instant *at, int hold)
+static int is_in(const pl_events *m, uint64_t set, int place, int hold)
 {
-    const pl_hold *h = &m->hold[hold];
-    const int placed = h->impact < 0 || is_none(m, at, m->impact[h->impact].place);
-    take(m, at, hold, m->back, m->back_watch, value_of(m, at, h->velocity));
-    if (placed) {
-        renew(m, at);
-    } else {
-        put_on(m, at, h->impact);
+    return (set >> hold & 1) && !(place && m->hold[hold].impact < 0);
+}
+
+/* By what each of a set changes when one of them is taken away, as a matrix; others a little less, for some may say the
+ * same.  size: so much is tried */
+static void answer(const pl_events *m, pl_instant *at, uint64_t set, int place, real size)
+{
+    const int n = m->holds;
+    real *matrix = at->work, *before = matrix + n * n, *y = before + n;
+    int i, k;
+    for (i = 0; i < m->states; i++) {
+        y[i] = at->y[i];
     }
+    for (i = 0; i < n; i++) {
+        before[i] = is_in(m, set, place, i) ? value_of(m, at, watch_of(m, i, place)) : 0;
+    }
+    for (k = 0; k < n; k++) {
+        if (is_in(m, set, place, k)) {
+            take_hold(m, at, k, place, size);
+            renew(m, at);
+        }
+        for (i = 0; i < n; i++) {
+            const int both = i != k && is_in(m, set, place, k) && is_in(m, set, place, i);
+            const real more = both ? before[i] - value_of(m, at, watch_of(m, i, place)) : 0;
+            matrix[i * n + k] = i == k ? 1 : more / size * (1 - NEAR * NEAR);
+        }
+        for (i = 0; i < m->states; i++) {
+            at->y[i] = y[i];
+        }
+    }
+    renew(m, at);
+}
+
+/* Takes away what a set is off, all at once, for each moves those that it meets.  0: there is nothing */
+static int take_away(const pl_events *m, pl_instant *at, uint64_t set, int place)
+{
+    const int n = m->holds;
+    real *off = at->work + n * n, size = 0;
+    int pivot[64], slack = 0, i;
+    for (i = 0; i < n; i++) {
+        if (is_in(m, set, place, i)) {
+            size = larger(size, watched(m, at, watch_of(m, i, place)).terms);
+            slack |= !is_none(m, at, watch_of(m, i, place));
+        }
+    }
+    if (!slack) {
+        return 0;
+    }
+    answer(m, at, set, place, NEAR * size);
+    for (i = 0; i < n; i++) {
+        const int watch = is_in(m, set, place, i) ? watch_of(m, i, place) : -1;
+        off[i] = watch < 0 || is_none(m, at, watch) ? 0 : value_of(m, at, watch);
+    }
+    if (pl_factor(n, at->work, pivot)) {
+        pl_solve(n, at->work, pivot, off);
+        for (i = 0; i < n; i++) {
+            if (is_in(m, set, place, i)) {
+                take_hold(m, at, i, place, off[i]);
+            }
+        }
+        renew(m, at);
+    }
+    return 1;
+}
+
+/* Puts a set where it is held, but for rounding: a place that is there stays, for others are held by it. */
+static void put_back(const pl_events *m, pl_instant *at, uint64_t set)
+{
+    int again;
+    for (again = 0; again < 4 && (take_away(m, at, set, 0) | take_away(m, at, set, 1)); again++) {
+        ;
+    }
+}
+
+static void stop_all(const pl_events *m, pl_instant *at, uint32_t set)
+{
+    uint64_t holds = 0;
+    int k;
+    for (k = 0; k < m->impacts; k++) {
+        holds |= set >> k & 1 ? (uint64_t)1 << m->impact[k].hold : 0;
+    }
+    put_back(m, at, holds);
 }
 
 /* The derivatives of what is held are held with it: by oblique projections, until nothing moves any more. */
@@ -244,16 +349,7 @@ static void keep_moved(const pl_events *m, pl_instant *at)
 
 static void keep(const pl_events *m, pl_instant *at)
 {
-    int again, slack = 1, i;
-    for (again = 0; again < 3 * m->holds && slack; again++) { /* what one is put back by moves those that it meets */
-        slack = 0;
-        for (i = 0; i < m->holds; i++) {
-            if (holds_now(m, at, i) && is_slack(m, at, i)) {
-                put_back(m, at, i);
-                slack = 1;
-            }
-        }
-    }
+    put_back(m, at, held_now(m, at));
     keep_moved(m, at);
 }
 
@@ -294,13 +390,12 @@ static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
  * holds it, as along x at (1, 0) of a circle, it is let go. */
 static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
 {
-    const int watch = up ? m->hold[hold].up : m->hold[hold].down;
     column w;
     real pull;
-    if (watch < 0) {
+    if ((up ? m->hold[hold].up : m->hold[hold].down) < 0) {
         return -1;
     }
-    w = watched(m, at, watch);
+    w = pull_of(m, at, hold, up);
     pull = column_at(&w, 0);
     if (pl_not_finite(&pull, 1)) {
         return 1;
@@ -348,7 +443,11 @@ static real speed_of(const pl_events *m, const pl_instant *at, int k)
 
 static real speed_of_met(const pl_events *m, pl_instant *at, int k)
 {
-    at->chain.least = larger(at->chain.least, noise_of(magnitude(press_of(m, at, k))));
+    int i;
+    for (i = 0; i < m->impacts; i++) {
+        const real terms = rest_of(m, i) < 0 ? 0 : speed_terms(m, at, i, m->h);
+        at->chain.least = larger(at->chain.least, noise_of(terms));
+    }
     return speed_of(m, at, k);
 }
 
@@ -378,11 +477,6 @@ static void assign(const pl_events *m, pl_instant *at, int first, int count)
 static void jump(const pl_events *m, pl_instant *at, int k)
 {
     assign(m, at, m->impact[k].jump, m->impact[k].jumps);
-}
-
-static void stop(const pl_events *m, pl_instant *at, int k)
-{
-    assign(m, at, m->impact[k].still, m->impact[k].jumps);
 }
 
 static void follow(const pl_events *m, pl_instant *at, int jumped)
@@ -503,9 +597,8 @@ static int is_pressed(const pl_events *m, const pl_instant *at, int impact)
     const int hold = m->impact[impact].hold;
     int up, any = 0;
     for (up = 0; up < 2; up++) {
-        const int watch = up ? m->hold[hold].up : m->hold[hold].down;
-        if (watch >= 0) {
-            const column w = watched(m, at, watch);
+        if ((up ? m->hold[hold].up : m->hold[hold].down) >= 0) {
+            const column w = pull_of(m, at, hold, up);
             if (!(certain(&w) < 0)) {
                 return 0;
             }

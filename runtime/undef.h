@@ -155,6 +155,7 @@
 #undef PL_SERVED_ROW
 #undef PL_END_ROW
 #undef PL_SERIES_ROW
+#undef PL_HELD
 #undef PL_HERE
 #undef PL_HIDDEN
 #undef PL_HUGE

@@ -5,6 +5,7 @@
 #include "model/contacts/contacts.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"
+#include "step/contacts/series_contacts.h"
 
 static const struct expansion *expansion(const struct emitter *e)
 {
@@ -102,6 +103,8 @@ void emit_switching_macros(const struct emitter *e)
 	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
 	say_macro(e, "REGIONS", integer_text(regions_of_series(x) > 0));
 	say_macro(e, "BOUNCES", integer_text(has_bounces(e->model)));
+	if (meets_contacts(e))
+		say_macro(e, "HELD", integer_text(x->contacts->holds));
 }
 
 void emit_passing_table(const struct emitter *e, int order)

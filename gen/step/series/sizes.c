@@ -38,13 +38,22 @@ static tape_ref times_size(struct recurrences *r, tape_ref size, int sequence)
 	return times(r->t, size, size_of_value(r, sequence));
 }
 
-/* By its own row: what M_jj x_j is the sum of, over M_jj. Where that is 0 or chosen it is a force. */
+/* Whether a diagonal divides whatever is chosen */
+static bool divides(const struct recurrences *r, int sequence)
+{
+	const struct sequence *s = sequence == NONE ? NULL : sequence_of(r, sequence);
+	if (s && s->kind == SEQUENCE_CHOICE)
+		return divides(r, s->a) && divides(r, s->b);
+	return s && (s->kind != SEQUENCE_SUM || (s->terms > 0 && s->term[0].factor[0] != 0));
+}
+
+/* By its own row: what M_jj x_j is the sum of, over M_jj. Where that may be 0 it is a force. */
 static tape_ref size_of_solution(struct recurrences *r, int sequence)
 {
 	const struct linear_equations *e = sequence_of(r, sequence)->equations;
 	const int j = sequence_of(r, sequence)->component, *row = e->matrix + j * e->n;
 	tape_ref all = e->right[j] == NONE ? TAPE_NONE : recurrence_full_size(r, e->right[j]);
-	if (row[j] == NONE || sequence_of(r, row[j])->kind == SEQUENCE_CHOICE)
+	if (!divides(r, row[j]))
 		return size_of_value(r, sequence);
 	for (int k = 0; k < e->n; k++)
 		if (k != j && row[k] != NONE)
