@@ -87,10 +87,11 @@ static void try_scheme_in(struct measuring *m, const char *scheme, bool single)
 	}
 }
 
-/* In float and in double, unless one is asked for */
+/* In float and in double, unless one is asked for. What is tried stays in memory: with a fifth of it used, one that
+ * meets all needs is enough. */
 static void try_scheme(struct measuring *m, const char *scheme)
 {
-	for (int single = 1; single >= 0; single--)
+	for (int single = 1; single >= 0 && (memory_used() < 0.2 || !isfinite(m->cheapest)); single--)
 		if (!m->request->real_given || m->request->single == single)
 			try_scheme_in(m, scheme, single);
 }

@@ -58,7 +58,8 @@ typedef struct PL(piece) { /* a part of a step */
     real longest;                 /* that is tried [h] */
     int segment, splits;
 #if PL_CONTACTS
-    real low[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS], work[PL_EVENT_WORK(PL_ORDER, PL_HELD, PL_STATES)];
+    real low[PL_STATES], law[PL_ORDER + 1][PL_COLUMNS], terms[PL_TERMS];
+    real work[PL_EVENT_WORK(PL_ORDER, PL_HELD, PL_STATES)];
     pl_instant at;                /* what happens where it begins; law: the series from there */
 #if PL_MOVED
     real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];

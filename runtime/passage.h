@@ -32,8 +32,8 @@ static void PL(values_here)(const PL_TYPE *s, const real start[], const real slo
 }
 
 #if PL_CONTACTS
-/* All states are solved for at once: what rounding makes of that grows with their number, and does not heed which contact
- * bears much, and which none. */
+/* All states are solved for at once: what rounding makes of that grows with their number, and does not heed which
+ * contact bears much, and which none. */
 static void PL(level_pulls)(real terms[PL_TERMS])
 {
     const pl_events *const m = &PL(events);
@@ -99,7 +99,8 @@ static void PL(locate)(PL_TYPE *s, const real start[], const real slope[])
 typedef struct PL(meeting) { /* where the next internal step starts */
     struct PL_TYPE *s;
     const real *start, *slope;
-    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS], work[PL_EVENT_WORK(PL_EVENT_ORDER, PL_HELD, PL_STATES)];
+    real when, c[PL_EVENT_ORDER + 1][PL_EVENT_COLUMNS], terms[PL_TERMS];
+    real work[PL_EVENT_WORK(PL_EVENT_ORDER, PL_HELD, PL_STATES)];
     pl_instant at;
 #if PL_MOVED
     real moved[PL_MOVED_WORK(PL_STATES, PL_MOVED)];

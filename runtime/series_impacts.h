@@ -229,7 +229,8 @@ static void take_hold(const pl_events *m, pl_instant *at, int hold, int place, r
 /* Whether what is held has moved by more than rounding */
 static int is_slack(const pl_events *m, const pl_instant *at, int hold)
 {
-    return !is_none(m, at, watch_of(m, hold, 0)) || (m->hold[hold].impact >= 0 && !is_none(m, at, watch_of(m, hold, 1)));
+    return !is_none(m, at, watch_of(m, hold, 0)) ||
+           (m->hold[hold].impact >= 0 && !is_none(m, at, watch_of(m, hold, 1)));
 }
 
 static int is_in(const pl_events *m, uint64_t set, int place, int hold)

@@ -193,7 +193,7 @@ static void cradle_on_strings(const pl_model *m, double together, double toleran
 			apart = worse(apart, fabs(y[i] - (t > together ? place / n : i == 0 ? fmin(place, 0) :
 			    i == n - 1 ? fmax(place, 0) : 0)));
 	}
-	ok(apart <= tolerance && m->status(s) == 0, "%s: cradle on strings: 100 s, off by %.3g, tolerance %.3g, status %d",
+	ok(apart <= tolerance && m->status(s) == 0, "%s: on strings for 100 s: off by %.3g, tolerance %.3g, status %d",
 	   m->name, apart, tolerance, m->status(s));
 }
 
