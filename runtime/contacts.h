@@ -395,7 +395,7 @@ static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
             continue;
         }
         slow = larger(least_speed(m, at, slow), CALM * chain->most);
-        if (speed <= slow && (k != begins || (slow > 0 && rest_of(m, k) >= 0))) {
+        if (speed <= slow && (k != begins || (slow > 0 && rest_of(m, k) >= 0 && !(m->impact[k].restitution < 1)))) {
             met |= (uint32_t)1 << k;
             begins = k == begins ? -1 : begins;
             calms = 1;
