@@ -53,6 +53,9 @@
 #ifndef PL_EVENT_FREE
 #define PL_EVENT_FREE 0
 #endif
+#ifndef PL_HELD
+#define PL_HELD 0
+#endif
 #ifndef PL_MOVED
 #define PL_MOVED 0
 #endif

@@ -103,7 +103,8 @@ void emit_switching_macros(const struct emitter *e)
 	say_macro(e, "MAX_EVENTS", spell(e, "$N_MAX_EVENTS"));
 	say_macro(e, "REGIONS", integer_text(regions_of_series(x) > 0));
 	say_macro(e, "BOUNCES", integer_text(has_bounces(e->model)));
-	say_macro(e, "HELD", integer_text(meets_contacts(e) ? x->contacts->holds : 0));
+	if (meets_contacts(e))
+		say_macro(e, "HELD", integer_text(x->contacts->holds));
 }
 
 void emit_passing_table(const struct emitter *e, int order)
