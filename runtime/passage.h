@@ -33,20 +33,20 @@ static void PL(values_here)(const PL_TYPE *s, const real start[], const real slo
 
 #if PL_CONTACTS
 /* All states are solved for at once: what rounding makes of that grows with their number, and does not heed which
- * contact bears much, and which none. */
-static void PL(level_pulls)(real terms[PL_TERMS])
+ * contact at rest bears much, and which none.  What flies bears nothing: by the sizes of its own pull it has
+ * just left its guard, or is on its way back. */
+static void PL(level_pulls)(const int interval[], real terms[PL_TERMS])
 {
     const pl_events *const m = &PL(events);
-    real most = 0;
+    real *const size = &terms[PL_SWITCHING_FUNCTIONS], most = 0;
     int i, level;
     for (level = 0; level < 2; level++) {
-        for (i = 0; i < 2 * m->impacts; i++) {
-            const pl_hold *const h = m->impact[i / 2].hold < 0 ? NULL : &m->hold[m->impact[i / 2].hold];
-            const int watch = h == NULL ? -1 : i % 2 ? h->up : h->down;
-            real *const size = &terms[PL_SWITCHING_FUNCTIONS + (watch < 0 ? 0 : watch)];
-            if (watch >= 0) {
-                most = *size > most ? *size : most;
-                *size = level ? 8 * PL_STATES * most : *size;
+        for (i = 0; i < 2 * m->holds; i++) {
+            const pl_hold *const h = &m->hold[i / 2];
+            const int watch = i % 2 ? h->up : h->down;
+            if (watch >= 0 && h->impact >= 0 && interval[h->expression] == h->interval) {
+                most = level == 0 && size[watch] > most ? size[watch] : most;
+                size[watch] = level ? 8 * PL_STATES * most : size[watch];
             }
         }
     }
@@ -69,7 +69,7 @@ static void PL(values_along)(const PL_TYPE *s, const real start[], const real sl
         PL(add_node)(PL_TERMS, PL_WAYS, k, value, c[0]);
     }
 #if PL_CONTACTS
-    PL(level_pulls)(terms);
+    PL(level_pulls)(s->contact.interval, terms);
     PL(guards_along)(s->size * PL_H, c);
 #endif
 }
