@@ -85,6 +85,8 @@ static struct form *any_forcing(struct collector *c, mpq_srcptr factor, int powe
 		mpq_mul(scale, scale, p);
 		mpq_set_ui(p, 0, 1);
 		sine = false;
+		if (power == 0 && mpq_sgn(a) == 0)
+			return form_constant(scale);
 	}
 	return form_single((struct basis){ .kind = BASIS_FORCING,
 					   .forcing = forcing_of(c, a, w, p),

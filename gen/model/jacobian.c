@@ -215,7 +215,7 @@ void jacobian_of_motion(void *context)
 
 /* ---- M u + N(u) = f by Newton's method, from M u = f ---- */
 
-enum { TURNS = 6 };
+enum { TURNS = 12, TURNS_OF_MANY = 6 };     /* of more than two unknowns the code would grow too long */
 struct turning {                    /* M u + N(u) = f */
 	struct collector *c;
 	const struct linear_system *plain;
@@ -223,6 +223,7 @@ struct turning {                    /* M u + N(u) = f */
 	const struct node *node;
 	const struct form **answer; /* [column][row]: of M^-1 */
 	const struct form *(*u)[TURNS]; /* [column] */
+	int turns;
 };
 
 static void list_curve(struct curve *curve, int n)
@@ -260,8 +261,8 @@ static struct form *nothing_where_found(const struct turning *g, bool single)
 	mpq_div_2exp(tiny, tiny, 100);
 	for (int j = 0; j < g->curve->columns; j++) {
 		const struct form *const *u = g->u[j];
-		struct form *square = NEW(struct form), *last = form_difference(u[TURNS - 1], u[TURNS - 2]);
-		for (int t = 0; t < TURNS; t++)
+		struct form *square = NEW(struct form), *last = form_difference(u[g->turns - 1], u[g->turns - 2]);
+		for (int t = 0; t < g->turns; t++)
 			form_add_to(square, kept_product(c, g->node, u[t], u[t]), near);
 		square = form_difference(square, kept_product(c, g->node, last, last));
 		form_add_to(sum, kept_call(c, g->node, FN_SQRT, 1, &square), tiny);
@@ -329,11 +330,12 @@ struct linear_system last_turn(struct collector *c, const struct node *node, con
 	const struct form **M = ARRAY(const struct form *, n * n), **f = ARRAY(const struct form *, n),
 			  **slope = ARRAY(const struct form *, n * n);
 	list_curve(curve, n);
+	g.turns = curve->columns > 2 ? TURNS_OF_MANY : TURNS;
 	g.u = (const struct form *(*)[TURNS])ARRAY(const struct form *, TURNS * curve->columns);
 	make_answers(&g);
-	for (int t = 0; t < TURNS - 1; t++)
+	for (int t = 0; t < g.turns - 1; t++)
 		make_turn(&g, t);
-	struct point *there = point_at_turn(&g, TURNS - 1);
+	struct point *there = point_at_turn(&g, g.turns - 1);
 	for (int i = 0; i < n; i++)
 		f[i] = form_difference(plain->f[i], form_at(there, curve->N[i]));
 	for (int i = 0; i < n * n; i++) {
@@ -343,7 +345,7 @@ struct linear_system last_turn(struct collector *c, const struct node *node, con
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < curve->columns; j++) {
 			const struct form *by = form_at(there, curve->slope[i * n + curve->column[j]]);
-			f[i] = form_sum(f[i], kept_product(c, node, by, g.u[j][TURNS - 1]), false);
+			f[i] = form_sum(f[i], kept_product(c, node, by, g.u[j][g.turns - 1]), false);
 		}
 	f[0] = form_sum(f[0], nothing_where_found(&g, single), false);
 	*written = *plain->written;
@@ -351,8 +353,8 @@ struct linear_system last_turn(struct collector *c, const struct node *node, con
 	written->found = ARRAY(const struct form *, n);
 	const struct linear_system e = { n, M, f, written };
 	for (int j = 0; j < curve->columns; j++)
-		g.u[j][TURNS - 1] = kept_solution(c, node, &e, curve->column[j]);
-	there = point_at_turn(&g, TURNS - 1);
+		g.u[j][g.turns - 1] = kept_solution(c, node, &e, curve->column[j]);
+	there = point_at_turn(&g, g.turns - 1);
 	for (int i = 0; i < n; i++)
 		written->found[i] = form_at(there, curve->N[i]);
 	return e;
