@@ -364,7 +364,8 @@ enum {
 /* NAME_d has a status of its own: 0 or a sum of these bits, until it is set anew. */
 enum {
     PL_D_GRAZING = 1,   /* A guard was met, or all but met, so flatly that behind it no derivative is known. */
-    PL_D_ONE_SIDED = 2, /* Events at one instant: their order, which a param may turn, decides on the derivative. */
+    PL_D_ONE_SIDED = 2, /* Events at one instant: their order, which a param may turn, decides on the derivative.  Or an
+                         * output jumps at its peak: the derivative is at a fixed time. */
     PL_D_UNDECIDED = 4, /* PL_UNDECIDED: the derivative is that of what was taken. */
     PL_D_FAILED = 8     /* The step of the derivatives ended early: what NAME_status may say happened to it. */
 };

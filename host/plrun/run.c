@@ -124,7 +124,7 @@ static void report_doubt(const struct instance *s, unsigned *known, bool single)
 	const unsigned doubt = instance_doubt(s) & ~*known;
 	const char *const all[] = {             /* PL_D_GRAZING and so on */
 		"a stop was met, or all but met, so flatly that behind it they are not known",
-		"events, or peaks, fell together, and they are those of one order",
+		"events, or peaks, fell together, or an output jumps at its peak: they are of one side",
 		"no combination of stick and slip was valid", "their own steps have failed"
 	};
 	*known |= doubt;

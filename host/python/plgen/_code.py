@@ -29,7 +29,7 @@ STATUS = ((2, 'the step has met more crossings, or needed a longer search for th
           (64, 'the step has ended beyond a stop'),
           (128, 'the mass matrix is singular, or gradients of constraints depend on each other'))
 DOUBTS = ('a stop was met, or all but met, so flatly that behind it they are not known',
-          'events fell together, and they are those of one order',
+          'events, or peaks, fell together, or an output jumps at its peak: they are of one side',
           'no combination of stick and slip was valid', 'their own steps have failed')
 REFUSED = {8: 'the step is not above 0', 16: "with these values a load's frequency is below 0",
            4: 'with these values the mass matrix has no inverse',
