@@ -68,7 +68,7 @@ done <told
 result $? 'the script came to its end'
 
 # What a status means is said in the same words everywhere.
-sed -n 's/.*fprintf(stderr, " \(\(the\|what\|a\) [^%"]*\).*/\1/p' "$root/runtime/host/plmain.c" >words
+sed -n 's/.*fprintf(stderr, " \(\(the\|what\|no\|a\) [^%"]*\).*/\1/p' "$root/runtime/host/plmain.c" >words
 : >log
 [ "$(wc -l <words)" -eq "$(grep -c 'if (status & PL_' "$root/runtime/host/plmain.c")" ] || cp words log
 while read -r words; do
