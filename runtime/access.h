@@ -157,10 +157,15 @@ static void PL(keep_forced)(PL_TYPE *s, const real x[PL_STATES])
 #endif
 
 #if PL_SEGMENTS > 1
-/* Changes of the loads that are now, or past */
+/* Changes of the loads that are now, but for what rounding of times is of a step, or past */
 static inline void PL(pass_segments)(PL_TYPE *s)
 {
-    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
+#if PL_SINGLE
+    const real now = (real)1e-8 * PL_H;
+#else
+    const real now = (real)1e-18 * PL_H;
+#endif
+    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= now) {
         s->segment++;
     }
 }

@@ -69,7 +69,7 @@ static inline int PL(change_loads)(PL_TYPE *s)
 {
     int changed = 0;
 #if PL_SEGMENTS > 1
-    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)1e-18 * PL_H) {
+    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)(PL_SINGLE ? 1e-8 : 1e-18) * PL_H) {
         s->segment++;
         changed = 1;
     }

@@ -112,16 +112,18 @@ static struct demands demands_of(const struct building *b)
 	return (struct demands){ same && !atoms, piecewise && (same || atoms) };
 }
 
+/* Of loads only where nothing goes from event to event */
 bool leaves_over(const struct building *b)
 {
 	const struct scheme_row *row = scheme_row(b->model->scheme);
 	const struct demands demands = demands_of(b);
+	const bool loads = b->request->loads_left && b->spec->whens == 0;
 	if (b->request->solution)
 		return false;
 	if (!b->model->request.at.scheme.source || b->spec->count.multipliers > 0)
 		return !demands.piecewise || b->spec->count.multipliers > 0;
 	return b->model->scheme != SCHEME_EXACT && !row->holds_coupling &&
-	       (!demands.linear || row->expands || row->modes || b->request->loads_left || b->spec->operators.given);
+	       (!demands.linear || row->expands || row->modes || loads || b->spec->operators.given);
 }
 
 bool needs_regions(const struct building *b)

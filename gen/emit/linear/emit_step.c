@@ -228,8 +228,8 @@ static void emit_forced_changes(const struct emitter *e)
 	say(e, "    int segment = s->segment;\n");
 	emit_interrupted_step(e, "segment", "segment = ", "0, ");
 	say(e, "    s->segment = segment;\n"
-	       "    while (s->segment < %d && $n_until(s, s->segment) <= 1e-18 * %s) {\n",
-	    e->system->segments - 1, step_length(e));
+	       "    while (s->segment < %d && $n_until(s, s->segment) <= %s * %s) {\n",
+	    e->system->segments - 1, e->model->request.single ? "1e-8" : "1e-18", step_length(e));
 	if (e->step->forced->changes)
 		say(e, "        $n_rebase(s);\n");
 	say(e, "        s->segment++;\n"
