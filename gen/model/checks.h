@@ -53,14 +53,6 @@ bool squared_frequencies(const struct linear *system, double *value);
 double fastest_pole(const struct linear *system);           /* its size [1/s]; 0: not found */
 double fastest_decay(const struct linear *system);          /* the largest -Re of a pole [1/s], at least 0 */
 
-struct curve {                      /* of F: N, of the unknowns in `column`, and its derivatives by all, n x n */
-	const struct form **N, **slope;
-	int rows, *row, columns, *column; /* where there are some: last_turn finds them */
-};
-/* The turn of Newton's method from which x is taken as the solution of M x + N(x) = f; its start has no N */
-struct linear_system last_turn(struct collector *c, const struct node *node, const struct linear_system *plain,
-			       struct curve *curve, bool single);
-
 /* ---- linearise.c: the linear equations at a point, as a spec ---- */
 
 void find_symmetries(void *building);                       /* fills in model->equations.free */

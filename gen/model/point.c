@@ -167,13 +167,10 @@ static void round_value(mpq_ptr value, bool roughly)
 		round_long(value);
 }
 
-/* Where Newton's method starts: 0, or what turns have found of those in which equations are not linear */
+/* Where Newton's method starts: 0, or what iterates have found of those in which equations are not linear */
 static void start_highest(struct linearising *l)
 {
 	const struct segment_equations *s = l->b->full;
-	bool curved = false;
-	for (int i = 0; i < s->masses; i++)
-		curved = curved || s->mass[i].system.written->slope;
 	struct point *point = point_of(l);
 	for (int k = 0; k < l->rows; k++) {
 		mpq_ptr value = l->fixing[l->states + k].value;
@@ -181,7 +178,7 @@ static void start_highest(struct linearising *l)
 		const struct basis highest = { .kind = BASIS_COORD, .index = k,
 					       .order = l->fixing[l->states + k].order };
 		mpq_set_ui(value, 0, 1);
-		if (curved)
+		if (l->b->model->equations.implicit)
 			value_at(l, point, residual ? form_difference(form_unit(highest), residual)
 						    : s->multiplier[k - l->n], value);
 	}

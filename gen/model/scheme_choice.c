@@ -418,8 +418,7 @@ static bool is_stiff(struct building *b)
 	mpq_init(j.t);
 	const bool equation = b->collector.equation;
 	bool moves = b->full->masses > 0 && !b->spec->count.multipliers;
-	for (int i = 0; i < b->full->masses; i++)
-		moves = moves || b->full->mass[i].system.written->slope;
+	moves = moves || model->equations.implicit;
 	b->collector.equation = moves;
 	bool known = moves ? silent_guard(jacobian_of_motion, &j)
 			   : silent_guard(jacobian_forms, &j) && silent_guard(jacobian_evaluate, &j);

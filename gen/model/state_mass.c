@@ -76,36 +76,6 @@ struct starting {
 
 /* ---- M and f ---- */
 
-/* The name of a multiplier that stands there; NULL: none does */
-static const char *multiplier_within(const struct solving *w, const struct atom *atom)
-{
-	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->b->collector.atoms));
-	const struct form *form = form_unit((struct basis){ .kind = BASIS_ATOM, .index = atom->index, .atom = atom });
-	const char *name = NULL;
-	for (const struct form_term **term = terms_within(form, seen); *term; term++)
-		if ((*term)->basis.kind == BASIS_COORD && (*term)->basis.index >= w->coords)
-			name = w->b->model->names.coord[(*term)->basis.index];
-	return name;
-}
-
-static _Noreturn void report_kink(const struct solving *w, const struct atom *atom)
-{
-	const char *text = text_between(atom->node->start, atom->node->end), *name = multiplier_within(w, atom);
-	if (name)
-		error(atom->node->start, "a force takes smooth functions of it; 'friction' takes its size",
-		      "'%s' has a kink in the multiplier '%s', which is solved for with accelerations", text, name);
-	error(atom->node->start, "smooth functions of them are solved for",
-	      "'%s' has a kink in highest derivatives", text);
-}
-
-static bool holds_highest(const struct solving *w, const struct form *form)
-{
-	bool holds = atom_of_highest(form) != NULL;
-	for (int i = 0; i < form->terms; i++)
-		holds = holds || is_highest(&w->b->model->frame, &form->term[i].basis);
-	return holds;
-}
-
 /* Forces of friction may read multipliers: they are solved for where it slips. */
 static const struct form *without_friction(const struct form *form)
 {
@@ -114,44 +84,6 @@ static const struct form *without_friction(const struct form *form)
 		if (!is_friction(form->term[i].basis.atom))
 			form_add_basis(rest, form->term[i].basis, form->term[i].factor);
 	return rest;
-}
-
-/* Products and choices have them for operands; a condition on one, or a function of one, is not linear. */
-static bool is_linear_in_highest(const struct solving *w, const struct form *form)
-{
-	bool linear = true;
-	for (int i = 0; i < form->terms && linear; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		int held = 0;
-		for (int k = 0; a && a->highest && !is_friction(a) && k < a->operands && linear; k++) {
-			bool holds = holds_highest(w, a->operand[k]), chooses = a->kind == ATOM_CHOOSE;
-			held += holds * (a->kind == ATOM_PRODUCT ? (int)a->exponent[k] : 1);
-			linear = !(holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
-					     (!chooses && held > 1))) &&
-				 is_linear_in_highest(w, a->operand[k]);
-		}
-	}
-	return linear;
-}
-
-/* Terms that are linear in them */
-static struct form *linear_terms(const struct solving *w, const struct form *form)
-{
-	struct form *linear = NEW(struct form);
-	for (int i = 0; i < form->terms; i++)
-		if (is_linear_in_highest(w, form_unit(form->term[i].basis)))
-			form_add_basis(linear, form->term[i].basis, form->term[i].factor);
-	return linear;
-}
-
-static void check_smooth(const struct solving *w, const struct form *form)
-{
-	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->b->collector.atoms));
-	for (const struct form_term **term = terms_within(without_friction(form), seen); *term; term++) {
-		const struct atom *a = (*term)->basis.atom;
-		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function > FN_ATAN2)))
-			report_kink(w, a);
-	}
 }
 
 /* Of all residuals at once, so that each atom is derived once */
@@ -306,30 +238,6 @@ static void add_constraints(struct solving *w, int n, const int *order, int i, c
 	}
 }
 
-/* ---- equations that are not linear in highest derivatives, but for friction ---- */
-
-/* What a block's residuals hold that is not linear; NULL: nothing. It is taken out of them. */
-static struct curve *take_curve(struct solving *w, int n, const int *order, const struct form **F)
-{
-	struct curve *curve = NEW(struct curve);
-	bool any = false;
-	curve->N = ARRAY(const struct form *, n);
-	curve->slope = ARRAY(const struct form *, n * n);
-	for (int i = 0; i < n; i++) {
-		const struct form *all = F[i];
-		F[i] = linear_terms(w, all);
-		curve->N[i] = form_difference(all, F[i]);
-		any = any || curve->N[i]->terms;
-	}
-	for (int j = 0; j < n && any; j++) {
-		struct form **slope = form_derivatives(&w->b->collector, n, curve->N, false, order[j],
-						       highest_order(w->b, order[j]));
-		for (int i = 0; i < n; i++)
-			curve->slope[i * n + j] = slope[i];
-	}
-	return any ? curve : NULL;
-}
-
 static void solve_block(struct solving *w, int block)
 {
 	SCRATCH int *order = ARRAY(int, w->n);
@@ -345,24 +253,27 @@ static void solve_block(struct solving *w, int block)
 					     .order = highest_order(w->b, order[i]) };
 		node = node ? node : node_of_row(w, row);
 	}
-	struct curve *curve = take_curve(w, n, order, F);
-	for (int i = 0; i < n; i++) {
+	for (int i = 0; i < n * n; i++)
+		M[i] = w->M[row_of(w, order[i / n]) * w->n + order[i % n]];
+	struct nonlinear_terms *terms = take_nonlinear_terms(w->b, node, n, highest, M, F);
+	for (int i = 0; i < n; i++)
 		f[i] = form_difference(NEW(struct form), at_rest(w->b, w->rest, F[i]));
-		for (int j = 0; j < n; j++)
-			M[i * n + j] = form_difference(w->M[row_of(w, order[i]) * w->n + order[j]],
-						       curve ? curve->slope[i * n + j] : form_number(0));
-	}
+	for (int i = 0; i < n * n && terms; i++)
+		M[i] = form_difference(M[i], terms->slope[i]);
 	for (int i = 0; i < n && lacks_mass(w, n, order); i++)
 		add_constraints(w, n, order, i, M, f, F);
-	for (int i = 0; i < n && curve; i++)
-		F[i] = form_sum(F[i], curve->N[i], false);
+	for (int i = 0; i < n && terms; i++)
+		F[i] = form_sum(F[i], terms->N[i], false);
 	struct written_system *written = NEW(struct written_system);
 	*written = (struct written_system){ n, highest, F, NULL, NULL };
-	const struct linear_system plain = { n, M, f, written },
-				   e = curve ? last_turn(&w->b->collector, node, &plain, curve, w->b->request->single)
-					     : plain;
+	const struct linear_system linear = { n, M, f, written },
+				   e = terms ? newton_system(&w->b->collector, node, &linear, terms,
+							     w->b->request->single)
+					     : linear;
 	w->b->model->equations.moving_mass = node;
-	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e, plain, NULL };
+	if (terms)
+		w->b->model->equations.implicit = node;
+	*MORE(w->s->mass, w->s->masses) = (struct moving_mass){ node, e, linear, NULL };
 	for (int i = 0; i < n; i++) {
 		struct form *solution = kept_solution(&w->b->collector, node, &e, i);
 		if (order[i] < w->coords)
@@ -376,7 +287,7 @@ static void solve_blocks(void *context)
 {
 	struct solving *w = context;
 	for (int i = 0; i < w->n; i++)
-		check_smooth(w, residual_of(w, i));
+		check_smooth(w->b, without_friction(residual_of(w, i)));
 	for (int j = 0; j < w->n; j++)
 		find_column(w, j);
 	find_blocks(w);
@@ -481,7 +392,9 @@ static void check_mass_of(void *context)
 	}
 	const struct basis *highest = &system->written->highest[column];
 	error(work->mass->node->start, "another start, or a mass that moves with it",
-	      "the mass matrix is singular at the start: the equations do not determine %s%s there",
+	      "%s singular at the start: the equations do not determine %s%s there",
+	      work->mass->system.written->slope ? "without what is not linear in highest derivatives the mass matrix is"
+						: "the mass matrix is",
 	      model->names.coord[highest->index],
 	      highest->index >= model->n ? "" : highest->order == 2 ? "''" : "'");
 }

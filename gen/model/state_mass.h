@@ -32,6 +32,25 @@ mpq_t *inverse_masses(const struct building *b, const struct segment_equations *
 /* M^-1 force (per residual) per coordinate: what it adds to the highest derivatives */
 const struct form **accelerations_by(struct building *b, const struct form *const *force);
 
+/* ---- newton.c: equations that are not linear in highest derivatives or multipliers ---- */
+
+struct basis;
+struct collector;
+struct node;
+struct nonlinear_terms {            /* N of n equations, and its derivatives by all n unknowns */
+	const struct form **N, **slope;
+	int rows, *row, columns, *column; /* where there are some: newton_system finds them */
+};
+/* Kinks in them are errors. */
+void check_smooth(const struct building *b, const struct form *form);
+/* What residuals F, whose derivatives are J, hold that is not linear; NULL: nothing. It is taken out of them. */
+struct nonlinear_terms *take_nonlinear_terms(struct building *b, const struct node *node, int n,
+					     const struct basis *unknown, const struct form *const *J,
+					     const struct form **F);
+/* Solved for u of M u + N(u) = f, where M u = f is `linear` */
+struct linear_system newton_system(struct collector *c, const struct node *node, const struct linear_system *linear,
+				   struct nonlinear_terms *terms, bool single);
+
 /* ---- constraints.c ---- */
 
 /* What brings a state back onto them: model->equations.correction; initial values that meet them */

@@ -242,20 +242,11 @@ void check_contact_outputs(struct building *b)
 		statement_guard(check_output, &(struct asking){ b, &b->model->output[i] });
 }
 
-/* What they add would have to be solved for with what is not linear. */
-static void refuse_beside_curves(const struct building *b)
-{
-	for (int i = 0; i < b->full->masses && (b->model->contacts.impacts > 0 || holds_friction(b)); i++)
-		if (b->full->mass[i].system.written->slope)
-			error(b->full->mass[i].node->start,
-			      "friction F between ... takes functions of multipliers for F",
-			      "stops, jumps and friction beside equations that are not linear in highest derivatives "
-			      "or multipliers are not built");
-}
-
 void find_contacts(struct building *b)
 {
-	refuse_beside_curves(b);
+	const struct node *implicit = b->model->equations.implicit;
+	if (implicit && (b->model->contacts.impacts > 0 || holds_friction(b)))
+		refuse(CAN_CONTACTS, b->model, implicit->start);
 	for (int i = 0; i < b->model->contacts.impacts; i++) {
 		struct impact *impact = &b->model->contacts.impact[i];
 		if (impact->moves && impact->when->restitution)

@@ -173,7 +173,7 @@ struct joined {
 	const struct constraints *all;
 	int members, *member;
 	int accelerations;
-	int turn, turns;            /* of Newton's method for friction by multipliers; turn 0: without it */
+	int iterate, iterates;      /* of Newton's method for friction by multipliers; iterate 0: without it */
 	int *coord;                 /* per acceleration; a multiplier has none, and a number beyond the coordinates */
 	bool *coupled;              /* per state: its slope is one of them */
 	struct linear_equations *e;
@@ -308,10 +308,10 @@ static void add_reaction(struct joined *g, int k, int *slip, int *right, int *on
 		slip[i] = all->none;
 	*right = all->none;
 	*one = sequence_of_form(w, form_number(1));
-	if (!drag || g->turn == 0)
+	if (!drag || g->iterate == 0)
 		return;
 	const int size = force_sequence(w, drag->force, drag->force);
-	if (drag->curved && g->turn == g->turns)
+	if (drag->curved && g->iterate == g->iterates)
 		*one = one_where_found(g, k, size);
 	sum_add(&sum, TERM_SEQUENCE, size, 0, plus);
 	for (int i = 0; i < g->accelerations; i++) {
@@ -480,16 +480,16 @@ static void plain_residuals(const struct joined *g)
 }
 
 /* Without friction that reads multipliers, then with it, again where it is curved */
-static int turns_of(const struct joined *g)
+static int iterates_of(const struct joined *g)
 {
 	enum { CURVED = 6 };
-	int turns = 0;
+	int iterates = 0;
 	for (int k = 0; k < g->members; k++) {
 		const struct drag *drag = reaction_of(g, k);
 		const int needed = !drag ? 0 : drag->curved ? CURVED : 1;
-		turns = needed > turns ? needed : turns;
+		iterates = needed > iterates ? needed : iterates;
 	}
-	return turns;
+	return iterates;
 }
 
 /* The force of what slips, of the multipliers that are solved for; kinks are where those pass them */
@@ -519,14 +519,14 @@ void solve_group(const struct constraints *all, int members, int *member)
 	const struct model_contacts *contacts = &w->step->model->contacts;
 	struct joined g = { .all = all, .members = members, .member = member,
 			   .coupled = ARRAY(bool, w->system->states) };
-	g.turns = turns_of(&g);
-	for (; g.turn < g.turns; g.turn++) {
+	g.iterates = iterates_of(&g);
+	for (; g.iterate < g.iterates; g.iterate++) {
 		make_equations(&g);
 		plain_residuals(&g);
 	}
 	make_equations(&g);
 	find_highest(&g);
-	if (g.turns > 0)
+	if (g.iterates > 0)
 		take_reactions(&g);
 	for (int i = 0, row = 0; i < contacts->masses; i++)
 		for (int j = 0; j < contacts->mass[i]->n && acts_on(&g, contacts->mass[i]); j++, row++)

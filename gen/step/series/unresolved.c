@@ -151,7 +151,7 @@ static void find_in_atom(struct finding *f, const struct atom *atom)
 		f->looks = true;
 }
 
-/* Of turns of Newton's method the first coefficients alone are read: what is solved for follows its residuals. */
+/* Of iterates of Newton's method the first coefficients alone are read: what is solved for follows its residuals. */
 static void find_in_form(struct finding *f, const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++) {

@@ -1,0 +1,319 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* Equations that are not linear in highest derivatives u or multipliers, friction apart: M u + N(u) = f. Newton's
+ * method starts from M u = f, or from M u + N_u(0) u = f - N(0) where M does not determine u. Its iterates are forms,
+ * of the unknowns in N alone; the last step is a linear system of all unknowns, which takes the place of M u = f. */
+#include "building.h"
+#include "math/math.h"
+#include "state_mass.h"
+
+enum { ITERATES = 12 };                     /* from far away some halve their error before they double their digits */
+
+/* ---- what is not linear ---- */
+
+/* The name of a multiplier that stands there; NULL: none does */
+static const char *multiplier_within(const struct building *b, const struct atom *atom)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	const struct form *form = form_unit((struct basis){ .kind = BASIS_ATOM, .index = atom->index, .atom = atom });
+	const char *name = NULL;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.kind == BASIS_COORD && (*term)->basis.index >= b->model->n)
+			name = b->model->names.coord[(*term)->basis.index];
+	return name;
+}
+
+static _Noreturn void report_kink(const struct building *b, const struct atom *atom)
+{
+	const char *text = text_between(atom->node->start, atom->node->end), *name = multiplier_within(b, atom);
+	if (name)
+		error(atom->node->start, "a force takes smooth functions of it; 'friction' takes its size",
+		      "'%s' has a kink in the multiplier '%s', which is solved for with accelerations", text, name);
+	error(atom->node->start, "smooth functions of them are solved for",
+	      "'%s' has a kink in highest derivatives", text);
+}
+
+void check_smooth(const struct building *b, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct atom *a = (*term)->basis.atom;
+		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function > FN_ATAN2)))
+			report_kink(b, a);
+	}
+}
+
+static bool holds_highest(const struct building *b, const struct form *form)
+{
+	bool holds = false;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		holds = holds || (basis->atom && basis->atom->highest) || is_highest(&b->model->frame, basis);
+	}
+	return holds;
+}
+
+/* Products and choices have them for operands; a condition on one, or a function of one, is not linear. */
+static bool is_linear_in_highest(const struct building *b, const struct form *form)
+{
+	bool linear = true;
+	for (int i = 0; i < form->terms && linear; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		int held = 0;
+		for (int k = 0; a && a->highest && !is_friction(a) && k < a->operands && linear; k++) {
+			bool holds = holds_highest(b, a->operand[k]), chooses = a->kind == ATOM_CHOOSE;
+			held += holds * (a->kind == ATOM_PRODUCT ? (int)a->exponent[k] : 1);
+			linear = !(holds && ((a->kind != ATOM_PRODUCT && !chooses) || (chooses && k == 0) ||
+					     (!chooses && held > 1))) &&
+				 is_linear_in_highest(b, a->operand[k]);
+		}
+	}
+	return linear;
+}
+
+static struct form *linear_terms(const struct building *b, const struct form *form)
+{
+	struct form *linear = NEW(struct form);
+	for (int i = 0; i < form->terms; i++)
+		if (is_linear_in_highest(b, form_unit(form->term[i].basis)))
+			form_add_basis(linear, form->term[i].basis, form->term[i].factor);
+	return linear;
+}
+
+/* Of N by all unknowns */
+static void derive_nonlinear(struct building *b, int n, const struct basis *unknown, struct nonlinear_terms *terms)
+{
+	terms->slope = ARRAY(const struct form *, n * n);
+	for (int j = 0; j < n; j++) {
+		struct form **slope = form_derivatives(&b->collector, n, terms->N, false, unknown[j].index,
+						       unknown[j].order);
+		for (int i = 0; i < n; i++)
+			terms->slope[i * n + j] = slope[i];
+	}
+}
+
+/* ---- the start ---- */
+
+/* A column that the linear terms leave undetermined, whatever their factors are that move; -1: none */
+static int undetermined_column(struct collector *c, int n, const struct form *const *J,
+			       const struct nonlinear_terms *terms)
+{
+	enum { SPREAD = 7919 };
+	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
+	int column;
+	for (int i = 0; i < n * n; i++) {
+		const struct form *factor = form_difference(J[i], terms->slope[i]);
+		if (is_constant(factor))
+			constant_value(c, factor, value[i]);
+		else
+			mpq_set_si(value[i], (i + 2) * (i + 3) * (i + 5) % SPREAD + 1, 1);
+		round_long(value[i]);
+	}
+	return rational_inverse(n, value, inverse, &column) ? -1 : column;
+}
+
+/* N(0) + N_u(0) u become linear terms. */
+static void linearise_at_rest(struct collector *c, const struct node *node, int n, const struct basis *unknown,
+			      const struct form **F, struct nonlinear_terms *terms)
+{
+	struct fixing *zero = ARRAY(struct fixing, n);
+	for (int j = 0; j < n; j++) {
+		zero[j] = (struct fixing){ .symbol = c->frame->coord[unknown[j].index], .coord = unknown[j].index,
+					   .order = unknown[j].order };
+		mpq_init(zero[j].value);
+	}
+	struct point *rest = point_new(c, n, zero);
+	for (int i = 0; i < n; i++) {
+		const struct form *linear = form_at(rest, terms->N[i]);
+		for (int j = 0; j < n; j++) {
+			const struct form *slope = form_at(rest, terms->slope[i * n + j]);
+			terms->slope[i * n + j] = form_difference(terms->slope[i * n + j], slope);
+			linear = form_sum(linear, kept_product(c, node, slope, form_unit(unknown[j])), false);
+		}
+		F[i] = form_sum(F[i], linear, false);
+		terms->N[i] = form_difference(terms->N[i], linear);
+	}
+}
+
+static _Noreturn void report_no_start(const struct building *b, const struct node *node, const struct basis *unknown)
+{
+	const bool multiplier = unknown->index >= b->model->n;
+	error(node->start, "an equation that is solved for it, or has a linear term of it, has a start",
+	      "Newton's method has no start for %s%s: where it is 0 the equations do not change with it",
+	      b->model->names.coord[unknown->index], multiplier ? "" : unknown->order == 2 ? "''" : "'");
+}
+
+struct nonlinear_terms *take_nonlinear_terms(struct building *b, const struct node *node, int n,
+					     const struct basis *unknown, const struct form *const *J,
+					     const struct form **F)
+{
+	struct collector *c = &b->collector;
+	struct nonlinear_terms *terms = NEW(struct nonlinear_terms);
+	bool any = false;
+	terms->N = ARRAY(const struct form *, n);
+	for (int i = 0; i < n; i++) {
+		const struct form *all = F[i];
+		F[i] = linear_terms(b, all);
+		terms->N[i] = form_difference(all, F[i]);
+		any = any || terms->N[i]->terms;
+	}
+	if (!any)
+		return NULL;
+	derive_nonlinear(b, n, unknown, terms);
+	if (undetermined_column(c, n, J, terms) >= 0)
+		linearise_at_rest(c, node, n, unknown, F, terms);
+	const int column = undetermined_column(c, n, J, terms);
+	if (column >= 0)
+		report_no_start(b, node, &unknown[column]);
+	return terms;
+}
+
+/* ---- iterates ---- */
+
+struct newton {                     /* M u + N(u) = f */
+	struct collector *c;
+	const struct linear_system *linear; /* M u = f */
+	const struct nonlinear_terms *terms;
+	const struct node *node;
+	const struct form **inverse; /* [column][row]: of M, those that N needs */
+	const struct form *(*u)[ITERATES]; /* [column] */
+};
+
+static void list_nonlinear(struct nonlinear_terms *terms, int n)
+{
+	for (int i = 0; i < n; i++) {
+		bool any = false;
+		if (terms->N[i]->terms)
+			*MORE(terms->row, terms->rows) = i;
+		for (int k = 0; k < n; k++)
+			any = any || terms->slope[k * n + i]->terms;
+		if (any)
+			*MORE(terms->column, terms->columns) = i;
+	}
+}
+
+static struct point *point_of_iterate(const struct newton *g, int iterate)
+{
+	const struct nonlinear_terms *terms = g->terms;
+	struct fixing *fixing = ARRAY(struct fixing, terms->columns);
+	for (int j = 0; j < terms->columns; j++) {
+		const struct basis *x = &g->linear->written->highest[terms->column[j]];
+		fixing[j] = (struct fixing){ .symbol = g->c->frame->coord[x->index], .coord = x->index,
+					     .order = x->order, .by = g->u[j][iterate] };
+	}
+	return point_new(g->c, terms->columns, fixing);
+}
+
+/* 0; no number where the last step still moved an unknown by more than 2^-25 of its size */
+static struct form *zero_where_converged(const struct newton *g, bool single)
+{
+	struct collector *c = g->c;
+	struct form *sum = NEW(struct form);
+	RATIONAL near = RATIO(1, 1), tiny = RATIO(1, 1);
+	mpq_div_2exp(near, near, single ? 20 : 50);
+	mpq_div_2exp(tiny, tiny, 100);
+	for (int j = 0; j < g->terms->columns; j++) {
+		const struct form *const *u = g->u[j];
+		struct form *square = NEW(struct form), *last = form_difference(u[ITERATES - 1], u[ITERATES - 2]);
+		for (int t = 0; t < ITERATES; t++)
+			form_add_to(square, kept_product(c, g->node, u[t], u[t]), near);
+		square = form_difference(square, kept_product(c, g->node, last, last));
+		form_add_to(sum, kept_call(c, g->node, FN_SQRT, 1, &square), tiny);
+	}
+	return sum;
+}
+
+/* u = M^-1 (f - N(u)) for the unknowns of N alone: (1 + M^-1 N_u) u' = M^-1 (f - N + N_u u) */
+static void add_iterate(const struct newton *g, int iterate)
+{
+	const struct nonlinear_terms *terms = g->terms;
+	const int n = g->linear->n, columns = terms->columns;
+	struct collector *c = g->c;
+	struct point *there = point_of_iterate(g, iterate);
+	const struct form **M = ARRAY(const struct form *, columns * columns),
+			  **f = ARRAY(const struct form *, columns);
+	for (int i = 0; i < columns; i++) {
+		f[i] = g->u[i][0];
+		for (int j = 0; j < columns; j++)
+			M[i * columns + j] = form_number(i == j);
+		for (int k = 0; k < terms->rows; k++) {
+			const struct form *inverse = g->inverse[i * terms->rows + k];
+			const struct form *rest = form_at(there, terms->N[terms->row[k]]);
+			for (int j = 0; j < columns; j++) {
+				const struct form *slope =
+					form_at(there, terms->slope[terms->row[k] * n + terms->column[j]]);
+				rest = form_difference(rest, kept_product(c, g->node, slope, g->u[j][iterate]));
+				M[i * columns + j] = form_sum(M[i * columns + j],
+							      kept_product(c, g->node, inverse, slope), false);
+			}
+			f[i] = form_difference(f[i], kept_product(c, g->node, inverse, rest));
+		}
+	}
+	const struct linear_system e = { columns, M, f, NULL };
+	for (int i = 0; i < columns; i++)
+		g->u[i][iterate + 1] = kept_solution(c, g->node, &e, i);
+}
+
+static void start_iterates(struct newton *g)
+{
+	const struct nonlinear_terms *terms = g->terms;
+	struct linear_system unit = *g->linear;
+	struct collector *c = g->c;
+	unit.written = NULL;
+	g->u = (const struct form *(*)[ITERATES])ARRAY(const struct form *, ITERATES * terms->columns);
+	g->inverse = ARRAY(const struct form *, terms->columns * terms->rows);
+	for (int i = 0; i < terms->columns; i++)
+		g->u[i][0] = kept_solution(c, g->node, &unit, terms->column[i]);
+	for (int k = 0; k < terms->rows; k++) {
+		const struct form **f = ARRAY(const struct form *, unit.n);
+		for (int i = 0; i < unit.n; i++)
+			f[i] = form_number(i == terms->row[k]);
+		unit.f = f;
+		for (int i = 0; i < terms->columns; i++)
+			g->inverse[i * terms->rows + k] = kept_solution(c, g->node, &unit, terms->column[i]);
+	}
+}
+
+/* (M + N_u) u' = f - N + N_u u, of all unknowns, at the last iterate; `slope` of all terms */
+static struct linear_system last_step(const struct newton *g, bool single, struct written_system *written)
+{
+	const struct nonlinear_terms *terms = g->terms;
+	const int n = g->linear->n;
+	const struct form **M = ARRAY(const struct form *, n * n), **f = ARRAY(const struct form *, n);
+	struct point *there = point_of_iterate(g, ITERATES - 1);
+	for (int i = 0; i < n; i++)
+		f[i] = form_difference(g->linear->f[i], form_at(there, terms->N[i]));
+	for (int i = 0; i < n * n; i++)
+		M[i] = form_sum(g->linear->M[i], form_at(there, terms->slope[i]), false);
+	for (int i = 0; i < n; i++)
+		for (int j = 0; j < terms->columns; j++) {
+			const struct form *by = form_at(there, terms->slope[i * n + terms->column[j]]);
+			f[i] = form_sum(f[i], kept_product(g->c, g->node, by, g->u[j][ITERATES - 1]), false);
+		}
+	f[0] = form_sum(f[0], zero_where_converged(g, single), false);
+	return (struct linear_system){ n, M, f, written };
+}
+
+struct linear_system newton_system(struct collector *c, const struct node *node, const struct linear_system *linear,
+				   struct nonlinear_terms *terms, bool single)
+{
+	struct newton g = { .c = c, .linear = linear, .terms = terms, .node = node };
+	const int n = linear->n;
+	struct written_system *written = NEW(struct written_system);
+	const struct form **slope = ARRAY(const struct form *, n * n);
+	list_nonlinear(terms, n);
+	start_iterates(&g);
+	for (int t = 0; t < ITERATES - 1; t++)
+		add_iterate(&g, t);
+	for (int i = 0; i < n * n; i++)
+		slope[i] = form_sum(linear->M[i], terms->slope[i], false);
+	*written = *linear->written;
+	written->slope = slope;
+	written->found = ARRAY(const struct form *, n);
+	const struct linear_system e = last_step(&g, single, written);
+	for (int j = 0; j < terms->columns; j++)
+		g.u[j][ITERATES - 1] = kept_solution(c, node, &e, terms->column[j]);
+	struct point *there = point_of_iterate(&g, ITERATES - 1);
+	for (int i = 0; i < n; i++)
+		written->found[i] = form_at(there, terms->N[i]);
+	return e;
+}
