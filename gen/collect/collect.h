@@ -223,7 +223,7 @@ struct written_system {
 	int rows;
 	const struct basis *highest;
 	const struct form *const *residual;
-	/* their derivatives by these, where they are not linear in them, and M and f of Newton's last step; else NULL */
+	/* their derivatives by these, where they are not linear in them: M and f are of Newton's last step; or NULL */
 	const struct form *const *slope;
 	const struct form **found;  /* then what is not linear in each, of their solution */
 };

@@ -58,7 +58,7 @@ struct equations {                  /* as they are written */
 	const struct atoms *atoms;
 	const struct node *moving_mass; /* a term by which the mass matrix is not constant; NULL: it is */
 	bool indefinite;            /* nothing shows that this one stays regular */
-	const struct node *implicit; /* a term that is not linear in highest derivatives or multipliers; NULL: all are */
+	const struct node *implicit; /* a term that is not linear in highest derivatives or multipliers, or NULL */
 	/* Where linear equations of nonlinear ones were asked for, their spec and the point that they are at */
 	const char *linearised, *point;
 	int directions;             /* of coordinates, along which no equation changes: rows, largest entry 1 */
