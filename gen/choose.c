@@ -7,7 +7,6 @@
  * would miss, and of a few more, which leave more of the need to rounding. Of many states only steps of modes are
  * tried, where there are such. Where all modes are kept the states are those that were written. */
 #include "measuring.h"
-#include "command.h"
 #include "model/checks.h"
 #include "model/linear/modal_truncation.h"
 #include "report/report.h"

@@ -4,7 +4,6 @@
  * spec's start and from its neighbours, and the cheapest that meets all needs is taken. It is measured, not
  * certified. */
 #include "measuring.h"
-#include "command.h"
 #include "model/checks.h"
 #include "report/report.h"
 #include "step/certify/certify.h"

@@ -5,7 +5,6 @@
 #include "step/certify/certify.h"
 
 #include <math.h>
-#include <string.h>
 
 static const char *value_of_param(const struct symbol *s)
 {

@@ -5,8 +5,6 @@
 #include "command.h"
 #include "model/tunable/tuning.h"
 #include "report/report.h"
-#include "step/slopes.h"
-#include "step/step.h"
 
 #include <string.h>
 

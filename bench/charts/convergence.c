@@ -8,7 +8,6 @@
  * 0.03 s that every N has in common, until 30 s and until 0.6 s. VARIANTS holds what variants.sh made. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "charts.h"
 

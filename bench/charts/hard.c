@@ -23,7 +23,6 @@
 #include <quadmath.h>
 #include <setjmp.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "charts.h"
 

@@ -3,7 +3,6 @@
  * makes a scheme diverge, what the others' errors are, and what they cost. */
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "papers.h"
 

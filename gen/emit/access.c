@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* init, set, get, time, status, hold: what access.h is given of the model. */
 #include "declarations.h"
-#include "state.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "step/linear/forms.h"

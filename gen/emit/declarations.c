@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a header has: the struct of the state, the functions. */
 #include "declarations.h"
-#include "state.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"

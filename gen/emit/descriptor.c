@@ -1,12 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Tables that everyone may read, and the descriptor: the same functions for programs that drive any model. */
 #include "declarations.h"
-#include "state.h"
 #include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 #include "report/report.h"
-
-#include <string.h>
 
 /* Phi, or Gamma */
 static void emit_matrix(const struct emitter *e, const struct step *step, bool of_inputs, const char *declaration)

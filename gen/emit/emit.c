@@ -3,7 +3,6 @@
 #include "emit/linear/blocks.h"
 #include "declarations.h"
 #include "emit.h"
-#include "state.h"
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"

@@ -3,7 +3,6 @@
 #include "declarations.h"
 #include "steps.h"
 #include "model/tunable/tuning.h"
-#include "step/slopes.h"
 
 #include <string.h>
 

@@ -5,8 +5,6 @@
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
 
-#include <string.h>
-
 /* What a row leaves, left side minus right side, without its highest derivatives */
 static const char *residual(int row)
 {

@@ -5,7 +5,6 @@
 #include "steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/contacts/contacts.h"
-#include "model/regions/regions.h"
 #include "step/regions/guards.h"
 #include "step/regions/regions.h"
 

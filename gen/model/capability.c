@@ -2,7 +2,6 @@
 /* What goes with what: the facts of a model, and the rows of capability.def that they make true. */
 #include "capability.h"
 #include "model/contacts/contacts.h"
-#include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
 
 #include <string.h>

@@ -45,6 +45,7 @@ void jacobian_forms(void *jacobian);                        /* C, K and what `at
 /* K, and C where it is wanted, at j->t and j->state; leaves the statement where they are not defined */
 void jacobian_evaluate(void *jacobian);
 int  jacobian_point(const struct jacobian *j, struct fixing *fixing); /* states + 1, which it fixes */
+struct point *point_at_state(struct building *b, const mpq_t *state, mpq_srcptr t); /* as values; t NULL: at 0 */
 /* The left side minus the right side of an equation, not solved for its highest derivatives */
 const struct form *residual_as_written(const struct segment_equations *s, const int *owner, int row);
 void jacobian_of_motion(void *jacobian);                    /* a struct jacobian, of M^-1 f as numbers alone */

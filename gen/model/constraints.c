@@ -184,19 +184,12 @@ static double value_at(const struct start *w, struct point *point, const struct 
 
 static void evaluate(struct start *w, int level)
 {
-	struct jacobian j = { .b = w->b, .state = w->value };
-	mpq_init(j.t);
-	if (w->t)
-		mpq_set(j.t, w->t);
-	struct fixing *fixing = ARRAY(struct fixing, w->b->model->system.states + 1);
-	struct point *point = point_new(&w->b->collector, jacobian_point(&j, fixing), fixing);
-	point_at_values(point);
+	struct point *point = point_at_state(w->b, w->value, w->t);
 	for (int i = 0; i < w->rows; i++) {
 		w->g[i] = value_at(w, point, held_form(w, i, level));
 		for (int k = 0; k < w->n; k++)
 			w->G[i * w->n + k] = value_at(w, point, w->slope[level][k * w->rows + i]);
 	}
-	mpq_clear(j.t);
 }
 
 static double weight_of(const struct start *w, int coord, int level, double named)
@@ -240,6 +233,17 @@ static void factor(struct start *w, int level, double named)
 	}
 }
 
+/* x of L^T x = right */
+static void substitute_back(const struct start *w, double *x)
+{
+	const int m = w->rows;
+	for (int i = w->rank - 1; i >= 0; i--) {
+		for (int k = i + 1; k < w->rank; k++)
+			x[i] -= w->S[w->order[k] * m + w->order[i]] * x[k];
+		x[i] /= w->S[w->order[i] * m + w->order[i]];
+	}
+}
+
 /* x of S x = right over the first `rank` constraints, in their order, scaled */
 static void solve_first(const struct start *w, double *x)
 {
@@ -249,11 +253,7 @@ static void solve_first(const struct start *w, double *x)
 			x[i] -= w->S[w->order[i] * m + w->order[k]] * x[k];
 		x[i] /= w->S[w->order[i] * m + w->order[i]];
 	}
-	for (int i = w->rank - 1; i >= 0; i--) {
-		for (int k = i + 1; k < w->rank; k++)
-			x[i] -= w->S[w->order[k] * m + w->order[i]] * x[k];
-		x[i] /= w->S[w->order[i] * m + w->order[i]];
-	}
+	substitute_back(w, x);
 }
 
 /* Returns the largest move, relative to the larger of the state and 1 */
@@ -368,14 +368,13 @@ static const char *name_of(const struct start *w, int row)
 /* Of which others the gradient of the first one that follows is made: 1 c1 + 2 c2; NULL: it is 0 */
 static const char *combination(const struct start *w, const char **names)
 {
-	const int m = w->rows, last = w->order[w->rank];
-	SCRATCH double *x = ARRAY(double, m);
+	const int last = w->order[w->rank];
+	SCRATCH double *x = ARRAY(double, w->rows);
 	const char *text = NULL;
+	for (int i = 0; i < w->rank; i++)
+		x[i] = w->S[last * w->rows + w->order[i]];
+	substitute_back(w, x);
 	for (int i = w->rank - 1; i >= 0; i--) {
-		x[i] = w->S[last * m + w->order[i]];
-		for (int k = i + 1; k < w->rank; k++)
-			x[i] -= w->S[w->order[k] * m + w->order[i]] * x[k];
-		x[i] /= w->S[w->order[i] * m + w->order[i]];
 		const double factor = x[i] * w->scale[w->order[i]] / w->scale[last];
 		if (fabs(x[i]) < 1e-9)
 			continue;
@@ -416,10 +415,8 @@ static _Noreturn void report_unmet(struct start *w, int level, mpq_t *given)
 /* Whether those gradients depend on each other at other states, too */
 static bool depends_elsewhere(struct start *w)
 {
-	mpq_t *here = rationals(w->b->model->system.states);
+	mpq_t *here = rationals_copied((size_t)w->b->model->system.states, (const mpq_t *)w->value);
 	bool depends = true;
-	for (int i = 0; i < w->b->model->system.states; i++)
-		mpq_set(here[i], w->value[i]);
 	for (int point = 0; point < POINTS && depends; point++) {
 		set_values(w, here);
 		shift(w, 0, point, 1);
@@ -515,12 +512,10 @@ static struct start start_from(struct building *b, mpq_t *state, mpq_srcptr t)
 /* Positions, then velocities; returns what the first constraint that is not met misses, *missed */
 static double meet_levels(struct start *w, int *missed)
 {
-	mpq_t *given = rationals(w->b->model->system.states);
 	double miss = 0;
 	for (int level = 0; level < LEVELS; level++) {
+		mpq_t *given = rationals_copied((size_t)w->b->model->system.states, (const mpq_t *)w->value);
 		find_slopes(w, level);
-		for (int i = 0; i < w->b->model->system.states; i++)
-			mpq_set(given[i], w->value[i]);
 		evaluate(w, level);
 		miss = miss > 1e-12 ? miss : largest_miss(w, missed);
 		if (!is_met(w, level, given))

@@ -321,14 +321,9 @@ static bool is_exchanged(const int *owner, int written, int n, mpq_t *factor, in
 
 static void factors_at_start(struct building *b, int written, mpq_t *factor)
 {
-	struct jacobian j = { .b = b, .state = b->model->initial };
-	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
-	mpq_init(j.t);
-	const struct leading l = { .b = b, .start = point_new(&b->collector, jacobian_point(&j, fixing), fixing) };
-	point_at_values(l.start);
+	const struct leading l = { .b = b, .start = point_at_state(b, b->model->initial, NULL) };
 	for (int i = 0; i < written; i++)
 		leading_factors(l, i, &factor[i * b->model->n]);
-	mpq_clear(j.t);
 }
 
 /* Forces of elements and stops act in the equation of their coordinate. Masses that couple equations leave open which

@@ -3,7 +3,6 @@
  * the numbers of the generated code, so eigenvalues in double will do. */
 #include "building.h"
 #include "checks.h"
-#include "math/math.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -46,6 +45,19 @@ int jacobian_point(const struct jacobian *j, struct fixing *fixing)
 	*time = (struct fixing){ .at = model->spec->name_at };
 	time->form = form_constant(j->t);
 	return model->system.states + 1;
+}
+
+struct point *point_at_state(struct building *b, const mpq_t *state, mpq_srcptr t)
+{
+	struct jacobian j = { .b = b, .state = state };
+	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
+	mpq_init(j.t);
+	if (t)
+		mpq_set(j.t, t);
+	struct point *point = point_new(&b->collector, jacobian_point(&j, fixing), fixing);
+	point_at_values(point);
+	mpq_clear(j.t);
+	return point;
 }
 
 /* 0 where inputs are in it */

@@ -248,11 +248,8 @@ static void print_terms(FILE *to, const struct linearising *l, const struct tang
 {
 	RATIONAL factor = ZERO;
 	for (; *order >= 0; order++) {
-		const struct fixing *what = &l->fixing[*order];
-		mpq_set(factor, row->slope[*order]);
-		if (negative)
-			mpq_neg(factor, factor);
-		print_term(to, factor, name_of_fixing(l, what), begun);
+		(negative ? mpq_neg : mpq_set)(factor, row->slope[*order]);
+		print_term(to, factor, name_of_fixing(l, &l->fixing[*order]), begun);
 	}
 }
 

@@ -89,6 +89,7 @@ struct model *stepped_model(struct model *model, struct spec *spec, const struct
 /* ---- delays.c: what users see of a model, which with delayed inputs is around it ---- */
 
 const char *outer_name(const struct model *model);
+void output_rows(const struct linear *system, int force_columns, struct output *output);    /* of zeros: outputs.c */
 int outer_inputs(const struct model *model);
 mpq_srcptr outer_step(const struct model *model);            /* [s] */
 

@@ -286,7 +286,7 @@ static bool check_output(const struct model *model, const struct output *output)
 	return false;
 }
 
-static void make_rows(const struct linear *system, int force_columns, struct output *output)
+void output_rows(const struct linear *system, int force_columns, struct output *output)
 {
 	output->state = rationals(system->states);
 	output->load = ARRAY(mpq_t *, system->loads);
@@ -314,7 +314,7 @@ struct output *row_of_function(struct building *b, const struct switching *of, c
 {
 	struct output *row = NEW(struct output);
 	int segments = b->model->system.segments;
-	make_rows(&b->model->system, b->model->remainder.force_columns, row);
+	output_rows(&b->model->system, b->model->remainder.force_columns, row);
 	for (int s = 0; s < segments; s++) {
 		int known = s < of->segments ? s : 0;
 		spread_loads(b, form_in(e, known), add_direct, &(struct direct_row){ row, segments, s });
@@ -336,7 +336,7 @@ struct output *row_of_form(struct building *b, struct form *form)
 {
 	const struct linear *system = &b->model->system;
 	struct output *row = NEW(struct output);
-	make_rows(system, b->model->remainder.force_columns, row);
+	output_rows(system, b->model->remainder.force_columns, row);
 	spread_loads(b, form, add_direct, &(struct direct_row){ row, system->segments, 0 });
 	add_states_and_inputs(b, form, row);
 	repeat_loads(system, row);
@@ -388,7 +388,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 			model->equations.highest[k] = NEW(struct output);
 			model->equations.highest[k]->value = model->output[i].value;
 			model->equations.highest[k]->name = model->output[i].name;
-			make_rows(&model->system, model->remainder.force_columns, model->equations.highest[k]);
+			output_rows(&model->system, model->remainder.force_columns, model->equations.highest[k]);
 			add_highest(model, &model->system, inverse, highest, k, one, model->equations.highest[k]);
 		}
 	}
@@ -445,7 +445,7 @@ void build_outputs(struct building *b)
 		struct output *output = &model->output[i];
 		if (output->statement != reported && !check_output(model, output))
 			reported = output->statement;
-		make_rows(system, model->remainder.force_columns, output);
+		output_rows(system, model->remainder.force_columns, output);
 		if (!output->value)
 			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())

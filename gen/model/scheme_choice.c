@@ -4,7 +4,6 @@
 #include "capability.h"
 #include "state_mass.h"
 #include "checks.h"
-#include "model/contacts/contacts.h"
 #include "model/contacts/friction.h"
 
 struct change {                     /* of formula in time */

@@ -8,7 +8,6 @@
  * as it stands, since a series has no order to lose; what rounding takes from g is projected out (constraints.h). */
 #include "building.h"
 #include "checks.h"
-#include "math/math.h"
 #include "state_mass.h"
 
 struct solving {
@@ -401,19 +400,13 @@ static void check_mass_of(void *context)
 
 void check_mass_at_start(struct building *b)
 {
-	struct jacobian j = { .b = b, .state = b->model->initial };
-	mpq_init(j.t);
-	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
-	struct starting work = { .b = b };
-	work.start = point_new(&b->collector, jacobian_point(&j, fixing), fixing);
-	point_at_values(work.start);
+	struct starting work = { .b = b, .start = point_at_state(b, b->model->initial, NULL) };
 	/* M of energies that are never below 0 has no negative pivot, G M^-1 G^T of constraints no positive one. */
 	b->model->equations.indefinite = b->full->masses > 0 && (b->spec->equations > 0 || b->full->negative_kinetic);
 	for (int i = 0; i < b->full->masses && !diagnostics_errors(); i++) {
 		work.mass = &b->full->mass[i];
 		statement_guard(check_mass_of, &work);
 	}
-	mpq_clear(j.t);
 }
 
 /* ---- forces on mechanisms ---- */

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better warned of. */
 #include "building.h"
-#include "model/contacts/contacts.h"
 #include "capability.h"
 #include "checks.h"
 #include "reads.h"
@@ -491,17 +490,12 @@ static void check_start(void *context)
 
 static void check_starts(struct building *b)
 {
-	struct jacobian j = { .b = b, .state = b->model->initial };
-	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
-	mpq_init(j.t);
-	struct passed passed = { b, point_new(&b->collector, jacobian_point(&j, fixing), fixing), NULL };
-	point_at_values(passed.start);
+	struct passed passed = { b, point_at_state(b, b->model->initial, NULL), NULL };
 	for (int i = 0; i < b->model->contacts.impacts; i++) {
 		passed.impact = &b->model->contacts.impact[i];
 		if (passed.impact->when->restitution)
 			silent_guard(check_start, &passed);
 	}
-	mpq_clear(j.t);
 }
 
 /* Other phases go on. */

@@ -3,7 +3,6 @@
  * and backward whirl told apart, and where a mode has a multiple of the speed (Lalanne and Ferraris 1998, chapter 2;
  * Genta 2005, chapter 3). */
 #include "report/campbell.h"
-#include "report/report.h"
 #include "step/linear/images.h"
 
 #include <math.h>

@@ -5,7 +5,6 @@
 #include "report/campbell.h"
 
 #include <math.h>
-#include <string.h>
 
 static const char *const whirl_name[] = { [WHIRL_NONE] = "none", [WHIRL_PLANAR] = "planar",
 					  [WHIRL_FORWARD] = "forward", [WHIRL_BACKWARD] = "backward",

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Equilibria: where they are, along which directions nothing holds them, and the poles of the linear equations there.
  * These are another model for each, which the caller makes. */
-#include "model/model.h"
 #include "report/report.h"
 #include "step/linear/images.h"
 

@@ -2,7 +2,6 @@
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
 #include "model/contacts/friction.h"
 #include "report/report.h"
-#include "plrt.h"
 #include "model/regions/regions.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"

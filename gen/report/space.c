@@ -6,7 +6,6 @@
 #include "step/linear/images.h"
 
 #include <math.h>
-#include <string.h>
 
 /* ---- state space ---- */
 

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Units of what a model shows: those that are written, and those that follow from them. */
-#include "model/capability.h"
 #include "model/tunable/tuning.h"
 #include "report/report.h"
 #include "step/step.h"

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step costs: evaluations of the remainder, load states, sums. */
-#include "model/capability.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"

@@ -1,10 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives of a step: the spec joined by its derivative is a model of its own, of which the steps of the derivatives
  * are taken. What it does not couple leaves no trace there, and each of its numbers is rounded once. */
-#include "step.h"
 #include "step/regions/regions.h"
 #include "model/reads.h"
-#include "model/series/remainder.h"
 #include "model/tunable/tuning.h"
 
 /* Whose factors the target makes, or whose step is no list of rows: it is stepped as the model is. */

@@ -3,15 +3,12 @@
  * operations take at most; a search that of its limits, each taken to the full; of a series that serves several steps
  * and of Newton's method there is no such sum. */
 #include "cost.h"
-#include "model/capability.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
-#include "collect/collect.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 #include "step/regions/guards.h"
 #include "step/regions/regions.h"
-#include "step/slopes.h"
 
 #include <math.h>
 #include <string.h>

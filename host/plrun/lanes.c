@@ -3,7 +3,6 @@
 #include "plrun.h"
 
 #include <stdlib.h>
-#include <string.h>
 
 struct lanes {
 	const struct machine *machine;

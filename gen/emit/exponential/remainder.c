@@ -7,8 +7,6 @@
 #include "model/regions/regions.h"
 #include "step/exponential/weights.h"
 
-#include <string.h>
-
 /* ---- what the remainder reads, and how it is called ---- */
 
 bool many_operators(const struct emitter *e)

@@ -3,7 +3,6 @@
  * stand in y and in ds. */
 #include "inner.h"
 #include "emit/declarations.h"
-#include "emit/state.h"
 #include "emit/steps.h"
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"

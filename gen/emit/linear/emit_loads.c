@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Loads on the target: phases as turns, envelopes as exponents of 2, load states made of them at a step's start. */
 #include "inner.h"
-#include "emit/state.h"
 #include "emit/steps.h"
 #include "emit/tunable/tunable.h"
 #include "model/reads.h"

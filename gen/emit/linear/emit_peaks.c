@@ -2,7 +2,6 @@
 /* output NAME = peak(x): a step looks for larger values inside, before it moves the state. */
 #include "inner.h"
 #include "emit/declarations.h"
-#include "emit/state.h"
 #include "emit/steps.h"
 #include "step/linear/rows.h"
 

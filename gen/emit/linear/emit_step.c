@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* A step program as C: sums over the old state, or for a large model loops over its tables. */
 #include "inner.h"
-#include "emit/state.h"
 #include "emit/steps.h"
 #include "model/reads.h"
 #include "step/linear/forms.h"

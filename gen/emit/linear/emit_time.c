@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Any time: NAME_at inside a step by a Taylor series, NAME_jump over many steps by powers of the step. */
 #include "inner.h"
-#include "emit/state.h"
 #include "emit/series/series.h"
 #include "emit/steps.h"
 #include "step/linear/forms.h"

@@ -4,8 +4,6 @@
 #include "emit/declarations.h"
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"
-#include "emit/state.h"
-#include "emit/steps.h"
 #include "model/contacts/contacts.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"

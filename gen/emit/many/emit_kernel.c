@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_kernel: the step and the outputs of lanes, of which a work item of a device has one, and kernel.h. */
 #include "inner.h"
-#include "emit/state.h"
-#include "emit/steps.h"
 
 #include <string.h>
 

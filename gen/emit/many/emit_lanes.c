@@ -4,8 +4,6 @@
 #include "inner.h"
 #include "emit/linear/blocks.h"
 #include "emit/series/series.h"
-#include "emit/state.h"
-#include "emit/steps.h"
 #include "step/exponential/recipe.h"
 #include "step/linear/rows.h"
 #include "step/series/expansion.h"

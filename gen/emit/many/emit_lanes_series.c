@@ -2,7 +2,6 @@
 /* Steps of a series of fixed order over lanes: the same tape as that of one instance, and series_lanes.h. */
 #include "inner.h"
 #include "emit/series/series.h"
-#include "emit/state.h"
 #include "step/series/expansion.h"
 
 void emit_shared_of_series(const struct batch *b)

@@ -4,10 +4,7 @@
 #include "inner.h"
 #include "emit/text.h"
 #include "model/contacts/contacts.h"
-#include "model/regions/regions.h"
-#include "model/regions/switching_functions.h"
 #include "step/regions/guards.h"
-#include "step/regions/regions.h"
 
 /* ---- what a region's A is the sum of ---- */
 

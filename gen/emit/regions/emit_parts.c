@@ -6,8 +6,6 @@
 #include "model/regions/regions.h"
 #include "step/regions/guards.h"
 
-#include <string.h>
-
 static const struct switching *regions_of(const struct emitter *part)
 {
 	return part->model->switching;

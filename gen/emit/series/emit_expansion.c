@@ -6,8 +6,6 @@
 #include "step/series/expansion.h"
 #include "step/regions/guards.h"
 
-#include <string.h>
-
 /* Of fixed order, the coefficients locals of the step */
 static bool is_straight(const struct emitter *e)
 {

@@ -6,8 +6,6 @@
 #include "step/series/expansion.h"
 #include "step/contacts/series_contacts.h"
 
-#include <string.h>
-
 /* ---- one of several series ---- */
 
 struct view {

@@ -2,7 +2,6 @@
 /* What a model has of params that an instance holds: types, retune. */
 #include "inner.h"
 #include "emit/formulas.h"
-#include "emit/state.h"
 #include "emit/regions/regions.h"
 #include "model/reads.h"
 #include "step/exponential/normal.h"

@@ -3,7 +3,6 @@
  * gradient n of a guard or a sliding velocity and the accelerations M^-1 n^T by a unit force are forms there. An impact
  * changes velocities by -(1 + e) s M^-1 n^T/(n M^-1 n^T), s the approach speed. */
 #include "inner.h"
-#include "math/math.h"
 #include "model/building.h"
 #include "model/checks.h"
 #include "model/state_mass.h"
@@ -122,11 +121,7 @@ static void answer_at_start(void *context)
 {
 	struct answering *work = context;
 	struct building *b = work->b;
-	struct jacobian j = { .b = b, .state = b->model->initial };
-	struct fixing *fixing = ARRAY(struct fixing, b->model->system.states + 1);
-	mpq_init(j.t);
-	struct point *point = point_new(&b->collector, jacobian_point(&j, fixing), fixing);
-	point_at_values(point);
+	struct point *point = point_at_state(b, b->model->initial, NULL);
 	work->value = 0;
 	for (int i = 0; i < b->model->n; i++)
 		if (work->c->gradient[i]->terms && work->c->force_direction[i]->terms)

@@ -5,8 +5,6 @@
 #include "model/building.h"
 #include "model/tunable/tuning.h"
 
-#include <string.h>
-
 /* ---- what is kept ---- */
 
 static const char *times(mpq_srcptr ratio, const char *name)

@@ -9,7 +9,6 @@
 #include "model/capability.h"
 #include "model/checks.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 

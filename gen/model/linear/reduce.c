@@ -11,7 +11,6 @@
 #include "model/tunable/tuning.h"
 
 #include <math.h>
-#include <string.h>
 
 struct observable {
 	int states;

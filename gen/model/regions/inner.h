@@ -22,6 +22,7 @@ int  count_candidates(struct switching *s);                 /* in one segment of
 struct switching *regions_of_rows(struct building *b, int rows, int *row);
 void remove_idle_breaks(struct switching *s);
 void check_sum(const struct building *b, const struct switching *s);  /* of regions that are cached; refuses others */
+bool same_equations(const struct linear *a, const struct linear *b, int row, int rows); /* from a row on: possible.c */
 void mark_possible(const struct building *b, struct switching *s); /* which may be: possible.c */
 void check_jumps(struct building *b, const struct switching *s); /* forces that jump with a velocity are refused */
 _Noreturn void too_many(struct building *b, const struct switching *s);

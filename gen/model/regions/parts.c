@@ -299,20 +299,6 @@ static struct output *own_row(const struct region_part *part, const struct outpu
 	return own;
 }
 
-static bool same_system(const struct linear *a, const struct linear *b)
-{
-	size_t n = (size_t)a->n, cells = n * n;
-	bool same = rationals_equal(cells, a->M, b->M) && rationals_equal(cells, a->C, b->C) &&
-		    rationals_equal(cells, a->K, b->K);
-	for (int l = 0; l < a->loads && same; l++)
-		for (int k = 0; k < a->load[l].columns && same; k++)
-			same = rationals_equal(n, a->load[l].force[k], b->load[l].force[k]);
-	for (int i = 0; i < a->inputs && same; i++)
-		for (int k = 0; k < 2 && same; k++)
-			same = rationals_equal(n, a->input[i].force[k], b->input[i].force[k]);
-	return same;
-}
-
 static bool same_rows(const struct switching *s, int a, int b)
 {
 	bool same = true;
@@ -326,7 +312,7 @@ static bool same_rows(const struct switching *s, int a, int b)
 static int add_system(struct switching *s, const struct linear *system, int segment, bool apart)
 {
 	for (int i = 0; i < s->systems && !apart; i++)
-		if (same_system(&s->system[i], system) && same_rows(s, s->system_segment[i], segment))
+		if (same_equations(&s->system[i], system, 0, system->n) && same_rows(s, s->system_segment[i], segment))
 			return i;
 	ENLARGE(s->system, (size_t)s->systems + 1);
 	ENLARGE(s->system_segment, (size_t)s->systems + 1);

@@ -73,16 +73,16 @@ int owner_of_hold(const struct switching *s, int state)
 	return owner;
 }
 
-static bool same_row(const struct linear *a, const struct linear *b, int row)
+bool same_equations(const struct linear *a, const struct linear *b, int row, int rows)
 {
-	const size_t n = (size_t)a->n, at = (size_t)row * n;
-	bool same = rationals_equal(n, a->M + at, b->M + at) && rationals_equal(n, a->C + at, b->C + at) &&
-		    rationals_equal(n, a->K + at, b->K + at);
+	const size_t n = (size_t)a->n, at = (size_t)row * n, cells = (size_t)rows * n, count = (size_t)rows;
+	bool same = rationals_equal(cells, a->M + at, b->M + at) && rationals_equal(cells, a->C + at, b->C + at) &&
+		    rationals_equal(cells, a->K + at, b->K + at);
 	for (int l = 0; l < a->loads && same; l++)
 		for (int k = 0; k < a->load[l].columns && same; k++)
-			same = mpq_equal(a->load[l].force[k][row], b->load[l].force[k][row]);
+			same = rationals_equal(count, a->load[l].force[k] + row, b->load[l].force[k] + row);
 	for (int i = 0; i < 2 * a->inputs && same; i++)
-		same = mpq_equal(a->input[i / 2].force[i % 2][row], b->input[i / 2].force[i % 2][row]);
+		same = rationals_equal(count, a->input[i / 2].force[i % 2] + row, b->input[i / 2].force[i % 2] + row);
 	return same;
 }
 
@@ -117,7 +117,7 @@ static void check_row(const struct building *b, const struct switching *s, int r
 		if (!has_own_inertia(here, row))
 			refuse_cache(b, s, node,
 				     "its equation has other highest derivatives, or these other equations");
-		if (r % in_one > 0 && beside_by(s, r) != by && !same_row(low, here, row))
+		if (r % in_one > 0 && beside_by(s, r) != by && !same_equations(low, here, row, 1))
 			refuse_cache(b, s, node, "its equation has other terms that switch");
 	}
 }
@@ -174,7 +174,7 @@ void check_sum(const struct building *b, const struct switching *s)
 		check_held(b, s, here);
 		for (int k = 0; k < s->rows && (here->releases > 0 || low->releases > 0); k++)
 			if (beside_by(s, r) >= 0 && has_own_events(s, beside_by(s, r)) &&
-			    !same_row(&s->system[low->system], &s->system[here->system], s->row[k]))
+			    !same_equations(&s->system[low->system], &s->system[here->system], s->row[k], 1))
 				check_row(b, s, r, s->row[k]);
 	}
 	if (s->transmitted_forces > 0)

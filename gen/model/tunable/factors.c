@@ -3,7 +3,6 @@
  * model is built at the spec's values with one after the other as an input, in silence. */
 #include "model/building.h"
 #include "elsewhere.h"
-#include "tuning.h"
 
 struct attempt {
 	struct building *b;

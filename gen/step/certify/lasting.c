@@ -3,7 +3,6 @@
  * p lambda^m, lambda = e^{(a + i w) h}, with (lambda - Phi) p = b; what is left of the start rings in powers of Phi,
  * whose sums are bounded by those of two levels. No formula counts on how long it lasts. */
 #include "inner.h"
-#include "model/linear/linear.h"
 
 #include <complex.h>
 #include <math.h>

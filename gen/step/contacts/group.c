@@ -2,7 +2,6 @@
 /* Forces of those that hold together beside a series, where the mass matrix or their directions depend on the state:
  * one system for the group, in which what does not hold has a row of its own. Friction by multipliers of constraints is
  * solved for with them. */
-#include "model/contacts/contacts.h"
 #include "model/contacts/friction.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"

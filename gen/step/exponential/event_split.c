@@ -3,12 +3,10 @@
  * intervals. Each step is looked at from both ends, where values and slopes of what is compared are known; one that
  * crosses a breakpoint is made again in parts, whose tables the target makes. */
 #include "model/contacts/contacts.h"
-#include "plrt.h"
 #include "step/contacts/series_contacts.h"
 #include "step/cost.h"
 #include "step/series/switching.h"
 #include "step/series/expansion.h"
-
 
 #include <math.h>
 

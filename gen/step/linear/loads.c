@@ -194,12 +194,8 @@ void load_state(const struct load *load, int column, mpq_srcptr t, mpq_ptr z)
 
 struct output state_as_output(const struct linear *system, int state)
 {
-	struct output output = { .state = rationals(system->states) };
-	output.load = ARRAY(mpq_t *, system->loads);
-	for (int l = 0; l < system->loads; l++)
-		output.load[l] = rationals((size_t)system->load[l].columns * (size_t)system->segments);
-	for (int k = 0; k < 2; k++)
-		output.input[k] = rationals(system->inputs);
+	struct output output = { 0 };
+	output_rows(system, 0, &output);
 	mpq_set_ui(output.state[state], 1, 1);
 	return output;
 }

@@ -15,8 +15,6 @@
 #include "step/cost.h"
 #include "step/tapes.h"
 
-#include <string.h>
-
 const char *step_form_text(const struct step *step)
 {
 	return format("%s%s", step_form_name(step->form), step->program->compensated ? ", compensated" : "");

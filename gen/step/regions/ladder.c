@@ -3,9 +3,7 @@
  * in which crossings are looked for, so that a step takes few of them. A piece has e^{A d} - I, correctly rounded entry
  * by entry, in the rows of what hardly changes in it: a number near 1 would repeat its rounding in every piece. */
 #include "inner.h"
-#include "plrt.h"
 #include "model/regions/regions.h"
-
 
 #include <math.h>
 

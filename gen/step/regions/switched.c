@@ -6,7 +6,6 @@
 #include "step/cost.h"
 #include "step/regions/guards.h"
 #include "step/linear/forms.h"
-#include "plrt.h"
 #include "step/exponential/recipe.h"
 
 #include <math.h>
