@@ -36,4 +36,13 @@ double worst_of_step(const struct step *step, int target, bool single);
 const char *worst_text(const struct step *step);             /* 4934 on cortex-m0, ... */
 void check_worst(const struct step *step);                   /* leaves the statement where a budget is not met */
 
+/* ---- worst_series.c: the most that a step by a series of fixed order does ---- */
+
+/* Of its expansions products, sums, quotients, coefficients that are kept; functions of loads; of a search for events
+ * terms of polynomials that are looked at, rows of these, parts; expansions */
+enum { WORST_PRODUCTS, WORST_SUMS, WORST_QUOTIENTS, WORST_KEPT, WORST_FORCED, WORST_LOOKED, WORST_ROWS, WORST_PIECES,
+       WORST_EXPANSIONS, WORST_SERIES };
+const char *unbounded_series(const struct step *step);       /* as unbounded_text */
+void count_worst_series(const struct step *step, double part[WORST_SERIES]);
+
 #endif

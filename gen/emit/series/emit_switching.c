@@ -88,14 +88,6 @@ void emit_switching_tables(const struct emitter *e)
 	       "$n_breakpoint};\n", x->functions, x->order);
 }
 
-static int most_changes(const struct expansion *x)
-{
-	int most = 1;
-	for (int i = 0; i < x->functions; i++)
-		most += x->function[i].breaks + 1;
-	return most;
-}
-
 void emit_switching_macros(const struct emitter *e)
 {
 	const struct expansion *x = expansion(e);

@@ -203,6 +203,14 @@ mpq_t *rising_breakpoints(const struct series_switching *d)
 	return rising;
 }
 
+int most_changes(const struct expansion *x)
+{
+	int most = 1;
+	for (int i = 0; i < x->functions; i++)
+		most += x->function[i].breaks + 1;
+	return most;
+}
+
 const char *series_switching_text(const struct step *step, int function)
 {
 	const struct step *shown = step->shown;

@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: GPL-3.0-or-later */
+/* The most that a step by a Taylor series of fixed order does: an expansion, and where the state chooses formulas one
+ * more for each event and each look at where a state that was set is. */
+#include "cost.h"
+#include "model/checks.h"
+#include "model/building.h"
+#include "model/capability.h"
+#include "step/regions/guards.h"
+#include "step/series/expansion.h"
+#include "step/series/switching.h"
+
+#include <math.h>
+
+const char *unbounded_series(const struct step *step)
+{
+	const struct model *model = step->model;
+	const struct expansion *x = step->taylor.expansion;
+	return step->collocation		   ? "Newton's method takes as many iterations as it needs"
+	       : !x				   ? "linear steps, those of regions and series of fixed order alone have one"
+	       : model->truncation.adaptive	   ? "a series is as long as its tolerance lets it be"
+	       : x->lines			   ? "a long series goes by loops over its coefficients"
+	       : x->contacts			   ? "what is held beside a series is put back by iterations"
+	       : mpq_sgn(model->truncation.tolerance) ? "each step measures its error"
+	       : model->equations.full && model->equations.full->masses > 0
+						   ? "it is looked at where the mass matrix turns singular"
+	       : model->equations.correction	   ? "constraints are met by iterations"
+	       : model->equations.conserved[0]	   ? "the energy is kept by iterations"
+						   : NULL;
+}
+
+/* Of one expansion, and the sizes of what is watched */
+static struct tape_cost cost_of_expansion(const struct step *step)
+{
+	const struct expansion *x = step->taylor.expansion;
+	const int states = step->branch->system.states;
+	struct recurrences *r = recurrences_new(step, x, (struct series_names){ .name = NULL });
+	struct tape *t = tape_of_recurrences(r);
+	for (int k = 0; k <= x->order; k++)
+		for (int i = 0; i < states + x->columns; i++)
+			if (i < states || k <= x->column_top[i - states])
+				recurrence_set(r, "", i < states ? i : x->column[i - states], k);
+	for (int i = 0; i < x->functions; i++)
+		tape_set(t, "", recurrence_size(r, x->function[i].sequence), 0, NULL);
+	return tape_cost(t);
+}
+
+/* Are the coefficients locals of the step, no array? */
+static bool is_straight(const struct step *step)
+{
+	enum { MOST = 1000 };
+	const struct expansion *x = step->taylor.expansion;
+	const struct linear *system = &step->branch->system;
+	bool ramps = false;
+	for (int i = 0; i < system->inputs; i++)
+		ramps = ramps || system->input[i].hold;
+	return !step->taylor.switching && !x->choices && !ramps && step->model->truncation.over == 1 &&
+	       x->multiplications <= MOST;
+}
+
+void count_worst_series(const struct step *step, double part[WORST_SERIES])
+{
+	enum { TWO_SUM = 8, ROW = 2 };
+	const struct expansion *x = step->taylor.expansion;
+	const struct tape_cost cost = cost_of_expansion(step);
+	const bool searched = step->taylor.switching != NULL;
+	const struct linear *system = &step->branch->system;
+	const double states = system->states, terms = fmax(x->order, 3) + 1;
+	const double pieces = searched ? max_events(step->model) + 1 : 1;
+	const double expansions = pieces + (searched ? most_changes(x) + 1 : 0), rows = pieces * x->functions;
+	const double ends = pieces * states * x->order;
+	const bool over = step->model->truncation.over > 1;      /* then the first step has a value within, too */
+	part[WORST_FORCED] = 0;
+	part[WORST_PRODUCTS] = expansions * cost.multiplications + (searched || over ? ends : 0);
+	part[WORST_SUMS] = expansions * cost.additions + (over ? 2 : 1) * ends + pieces * states * TWO_SUM;
+	part[WORST_QUOTIENTS] = expansions * cost.divisions;
+	part[WORST_KEPT] = is_straight(step) ? 0 : expansions * (states + x->columns) * (x->order + 1);
+	part[WORST_LOOKED] = searched ? (max_splits(step->model) + ROW * rows) * terms : 0;
+	part[WORST_ROWS] = searched ? rows * terms : 0;
+	part[WORST_PIECES] = searched ? pieces : 0;
+	part[WORST_EXPANSIONS] = expansions;
+	for (int l = 0; l < system->loads; l++)
+		part[WORST_FORCED] += x->load[l] * expansions *
+				      (oscillates(system->load[l].forcing) + (mpq_sgn(system->load[l].forcing->a) != 0));
+}
