@@ -15,17 +15,17 @@ const char *unbounded_series(const struct step *step)
 {
 	const struct model *model = step->model;
 	const struct expansion *x = step->taylor.expansion;
-	return step->collocation		   ? "Newton's method takes as many iterations as it needs"
-	       : !x				   ? "linear steps, those of regions and series of fixed order alone have one"
-	       : model->truncation.adaptive	   ? "a series is as long as its tolerance lets it be"
-	       : x->lines			   ? "a long series goes by loops over its coefficients"
-	       : x->contacts			   ? "what is held beside a series is put back by iterations"
+	return step->collocation	 ? "Newton's method takes as many iterations as it needs"
+	       : !x			 ? "linear steps, those of regions and series of fixed order alone have one"
+	       : model->truncation.adaptive ? "a series is as long as its tolerance lets it be"
+	       : x->lines		 ? "a long series goes by loops over its coefficients"
+	       : x->contacts		 ? "what is held beside a series is put back by iterations"
 	       : mpq_sgn(model->truncation.tolerance) ? "each step measures its error"
 	       : model->equations.full && model->equations.full->masses > 0
-						   ? "it is looked at where the mass matrix turns singular"
-	       : model->equations.correction	   ? "constraints are met by iterations"
-	       : model->equations.conserved[0]	   ? "the energy is kept by iterations"
-						   : NULL;
+		       ? "it is looked at where the mass matrix turns singular"
+	       : model->equations.correction	? "constraints are met by iterations"
+	       : model->equations.conserved[0]	? "the energy is kept by iterations"
+						: NULL;
 }
 
 /* Of one expansion, and the sizes of what is watched */
@@ -78,7 +78,8 @@ void count_worst_series(const struct step *step, double part[WORST_SERIES])
 	part[WORST_ROWS] = searched ? rows * terms : 0;
 	part[WORST_PIECES] = searched ? pieces : 0;
 	part[WORST_EXPANSIONS] = expansions;
-	for (int l = 0; l < system->loads; l++)
-		part[WORST_FORCED] += x->load[l] * expansions *
-				      (oscillates(system->load[l].forcing) + (mpq_sgn(system->load[l].forcing->a) != 0));
+	for (int l = 0; l < system->loads; l++) {
+		const struct forcing *f = system->load[l].forcing;
+		part[WORST_FORCED] += x->load[l] * expansions * (oscillates(f) + (mpq_sgn(f->a) != 0));
+	}
 }

@@ -30,7 +30,8 @@ void add_twin(struct series_switching *d, int breakpoint);            /* a secon
 int  upper_rank(const struct expansion *x, int function, int breakpoint);
 mpq_t *rising_breakpoints(const struct series_switching *d);
 const char *series_switching_text(const struct step *step, int function); /* over the written coordinates */
-int  most_changes(const struct expansion *x);                /* of intervals until those of a state that was set are found */
+/* Of intervals, until those of a state that was set are found */
+int  most_changes(const struct expansion *x);
 /* The number of a region is its switching functions' intervals in mixed radix; 0: too many for an int */
 int  regions_of_series(const struct expansion *x);
 /* Leaves the statement where what is chosen by the state is not treated */
