@@ -345,8 +345,12 @@ void say_comment(const struct emitter *e, const char *indent, const char *text)
 	say(e, "%s/* ", indent);
 	while (strlen(text) > WIDTH) {
 		size_t length = WIDTH;
-		while (text[length] != ' ')
+		while (length > 0 && text[length] != ' ')
 			length--;
+		if (length == 0)        /* a name longer than a line */
+			length = strcspn(text, " ");
+		if (!text[length])
+			break;
 		say(e, "%.*s\n%s * ", (int)length, text, indent);
 		text += length + 1;
 	}

@@ -259,7 +259,7 @@ static void name_states(struct building *b)
 	system->velocity = ARRAY(int, n);
 	system->coord = ARRAY(int, 2 * n);
 	system->states = model->n;
-	for (int j = 0; j < model->n && !model->relative; j++) {
+	for (int j = 0; j < model->n && model->n <= LIMIT_STATES && !model->relative; j++) {
 		int order = find_order(b->spec, j);
 		model->frame.coord[j]->highest =
 			order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;

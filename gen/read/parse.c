@@ -167,13 +167,14 @@ static const struct statement *failed_statement(const struct parser *p, size_t f
 	return NULL;
 }
 
-/* The names that a failed statement would have declared are known but broken: their use is not reported as well. */
-static void declare_what_failed(struct parser *p, size_t from)
+/* The names that a failed statement has declared, from `declared` on, or would have, are known but broken: their use
+ * is not reported as well. */
+static void declare_what_failed(struct parser *p, size_t from, struct symbol *declared)
 {
 	const char *text = p->lexer.source->text;
 	size_t after;
 	const struct statement *statement = failed_statement(p, from, &after);
-	for (struct symbol *s = p->spec->first; s; s = s->next)
+	for (struct symbol *s = declared; s; s = s->next)
 		if (s->statement == p->statement && s->part == p->part &&
 		    (s->kind == SYMBOL_PARAM || s->kind == SYMBOL_MATRIX))
 			s->broken = true;
@@ -255,6 +256,7 @@ void parse_statements(struct spec *spec, struct spec *own, struct assembly_part 
 	size_t position = strncmp(source->text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 	while (position < source->length) {
 		size_t unclosed, from = position;
+		struct symbol **declared = spec->last;
 		struct parser p = { .spec = spec, .own = own, .part = part, .goes_on = goes_on };
 		p.lexer = (struct lexer){ source, from, lex_statement_end(source, from, &unclosed), spec->assembly.uses,
 					  false };
@@ -275,7 +277,7 @@ void parse_statements(struct spec *spec, struct spec *own, struct assembly_part 
 		if (unclosed == SIZE_MAX)
 			take_unfinished_lines(&p);
 		position = p.lexer.end + 1;
-		declare_what_failed(&p, from);
+		declare_what_failed(&p, from, *declared);
 	}
 	struct place end = place_end(source);
 	if (!own->name)
