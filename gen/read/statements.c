@@ -313,6 +313,17 @@ static const struct unit *unit_of_named(const struct symbol *known, int primes)
 	return primes ? unit_of_derivative(known->unit, primes) : known->unit;
 }
 
+/* Whether two outputs have a column in common: the same name, or a vector and a component of it */
+static bool shares_column(const char *one, const char *other)
+{
+	const char *of_one = strchr(one, '['), *of_other = strchr(other, '[');
+	if (!of_one == !of_other)
+		return strcmp(one, other) == 0;
+	const char *component = of_one ? one : other, *opening = of_one ? of_one : of_other;
+	return strcmp(format("%.*s%s", (int)(opening - component), component, strchr(opening, ']') + 1),
+		      of_one ? other : one) == 0;
+}
+
 /* An output that only names something: x1, x2', x1'', a let. */
 static void read_plain_output(struct parser *p, struct token name)
 {
@@ -338,8 +349,9 @@ static void read_plain_output(struct parser *p, struct token name)
 	if (p->part)                            /* the assembly names it as it is */
 		return;
 	for (struct symbol *s = p->spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_OUTPUT && strcmp(s->name, shown) == 0)
-			error(name.at, NULL, "output '%s' is declared already", shown);
+		if (s->kind == SYMBOL_OUTPUT && shares_column(s->name, shown))
+			error(name.at, strcmp(s->name, shown) == 0 ? NULL : "a vector has a column for each component",
+			      "output '%s' is declared already", strchr(s->name, '[') ? s->name : shown);
 	struct symbol *symbol = NEW(struct symbol);
 	*symbol = (struct symbol){
 		.kind = SYMBOL_OUTPUT, .name = shown, .at = name.at, .statement = p->statement, .value = value
