@@ -364,6 +364,9 @@ static void find_force_columns(struct building *b)
 		if (any)
 			model->remainder.row[model->remainder.force_columns++] = i;
 	}
+	/* A jump splits steps of a linear model, too, whose parts go by forces: one that is 0 */
+	if (model->remainder.force_columns == 0 && model->contacts.impacts > 0 && is_event_split(model->scheme))
+		model->remainder.force_columns = 1;
 	for (int k = 0; k < model->schedule.operators; k++) {
 		struct operator *operator = &model->schedule.operator[k];
 		operator->left = ARRAY(struct form *, model->remainder.force_columns);
