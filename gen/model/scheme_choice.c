@@ -426,10 +426,42 @@ static bool is_stiff(struct building *b)
 	return known && fastest_decay(&j.at) * nearest_double(model->h) > 0.8 + 0.1 * model->truncation.order;
 }
 
+/* A root of time alone that comes to 0, where it has no Taylor series: sqrt(t), max(t - 1, 0)^1.5 */
+static bool is_root_at_zero(const struct atom *a)
+{
+	if ((a->kind != ATOM_POWER && !(a->kind == ATOM_CALL && a->function == FN_SQRT)) || a->state || a->velocity ||
+	    a->input)
+		return false;
+	const mpq_srcptr exponent = a->kind == ATOM_POWER ? factor_of(a->operand[1], BASIS_ONE) : NULL;
+	if (exponent && mpz_cmp_ui(mpq_denref(exponent), 1) == 0)
+		return false;
+	mpq_srcptr factor, constant;
+	struct form phase;
+	bool pieces = false;                    /* ends of them may be 0 at any time */
+	if (linear_in_time(a->operand[0], &factor, &phase)) {
+		constant = factor_of(&phase, BASIS_ONE);
+		return !constant || mpq_sgn(constant) * mpq_sgn(factor) < 0;
+	}
+	for (int i = 0; i < a->operand[0]->terms; i++)
+		pieces = pieces || a->operand[0]->term[i].basis.kind == BASIS_ATOM;
+	return pieces && is_piecewise_form(a->operand[0]);
+}
+
+/* A collocation bears what has no Taylor series at a time, which its steps get shorter to */
+static bool has_root_at_zero(const struct building *b)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool any = false;
+	for (int i = 0; i < b->full->residuals; i++)
+		for (const struct form_term **term = terms_within(b->full->residual[i].form, seen); *term; term++)
+			any = any || ((*term)->basis.kind == BASIS_ATOM && is_root_at_zero((*term)->basis.atom));
+	return any;
+}
+
 static void prefer_stiff(struct building *b)
 {
 	struct model *model = b->model;
-	if (!model->nonlinear.obstacle || model->scheme != SCHEME_TAYLOR || !is_stiff(b))
+	if (!model->nonlinear.obstacle || model->scheme != SCHEME_TAYLOR || (!is_stiff(b) && !has_root_at_zero(b)))
 		return;
 	model->scheme = SCHEME_AUTO;
 	model->truncation.order = 0;

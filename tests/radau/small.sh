@@ -105,6 +105,20 @@ for scheme in radau auto; do
     result $? "$scheme, 42 coordinates: within 1e-8 of a series, energy within 1e-8"
 done
 
+# ---- a root of t has no Taylor series at 0, and without a scheme a collocation is taken: x = t^1.5 ----
+
+cat >root.spec <<'EOF'
+model root
+coord x
+x' + x + x^3 = 1.5*sqrt(t) + t^1.5 + t^4.5
+step 0.1
+tolerance 1e-10
+EOF
+run_here root.spec 3 >out.csv 2>log
+awk -F, 'NR > 1 { d = $2 - $1^1.5; worst = d > worst ? d : -d > worst ? -d : worst }
+    END { print "off by", worst; exit !(NR == 32 && worst < 1e-8) }' out.csv >>log && grep -q 'scheme auto' log
+result $? 'a root of t that starts from 0'
+
 # ---- from rest in all states a series measures none by the rounding that it is ----
 
 awk -v only=ring_modulator -f "$root/tests/cases.awk" "$root/tests/jury/testset.cases" >>log
