@@ -523,6 +523,10 @@ if [ $made -eq 0 ]; then
 	: >log
 	[ $((8 * reported)) -le "$most" ] && [ $((4 * endless)) -le "$most" ]
 	result $? "$reported of them are reported, $endless have impacts without an end"
+	for seed in 282 301; do
+		judged_events spec $seed >log 2>&1
+		result $? "events of random model $seed, at rest on a breakpoint"
+	done
 	seed=0 told=0
 	while [ "$seed" -lt "$grazing" ]; do
 		seed=$((seed + 1))
