@@ -380,6 +380,19 @@ struct form *kept_product(struct collector *c, const struct node *node, const st
 	return sum;
 }
 
+/* What a linear core without the remainder carries, in one interval of time */
+static bool is_load(const struct collector *c, const struct form *form)
+{
+	return !c->whole_time && is_of_time(form) && time_part(form, true)->terms == 0;
+}
+
+struct form *unexpanded_product(struct collector *c, const struct node *node, const struct form *a,
+				const struct form *b)
+{
+	const bool expands = is_constant(a) || is_constant(b) || (is_load(c, a) && is_load(c, b));
+	return expands ? kept_product(c, node, a, b) : whole_product(c, node, a, 1, b);
+}
+
 /* ---- the others ---- */
 
 struct form *kept_reciprocal(struct collector *c, const struct node *node, const struct form *x)
@@ -426,7 +439,7 @@ static struct form *load_power(struct collector *c, const struct node *node, con
 struct form *kept_whole_power(struct collector *c, const struct node *node, const struct form *x, unsigned n)
 {
 	RATIONAL exponent = RATIO((long)n, 1);
-	bool load = !c->whole_time && n <= LIMIT_LOAD_POWER && is_of_time(x) && time_part(x, true)->terms == 0;
+	bool load = n <= LIMIT_LOAD_POWER && is_load(c, x);
 	return is_constant(x) ? constant_to_power(c, node, x, exponent)
 	       : n == 0       ? form_unit((struct basis){ .kind = BASIS_ONE })
 	       : load         ? load_power(c, node, x, n)
@@ -504,10 +517,17 @@ struct form *kept_comparison(struct collector *c, const struct node *node, enum 
 	return form_constant(value);
 }
 
+struct form *unexpanded_choice(struct collector *c, const struct node *node, const struct form *condition,
+			       const struct form *a, const struct form *b)
+{
+	const struct form *operand[] = { condition, a, b };
+	return is_constant(condition) ? kept_choice(c, node, condition, a, b)
+				      : new_atom(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
+}
+
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b)
 {
-	const struct form *operand[] = { condition, a, b };
 	if (is_constant(condition) || same_form(a, b)) {
 		RATIONAL value = ZERO;
 		bool first = true;
@@ -517,5 +537,5 @@ struct form *kept_choice(struct collector *c, const struct node *node, const str
 		}
 		return form_sum(first ? a : b, NEW(struct form), false);
 	}
-	return new_atom(c, node, (struct atom){ .kind = ATOM_CHOOSE }, 3, operand);
+	return unexpanded_choice(c, node, condition, a, b);
 }

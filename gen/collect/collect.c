@@ -179,7 +179,7 @@ static struct form *times(struct collector *c, const struct node *node, const st
 	if (switched)
 		return switched;
 	if (keeps(c))
-		return kept_product(c, node, a, b);
+		return (node->unexpanded ? unexpanded_product : kept_product)(c, node, a, b);
 	if (has_coordinate(a) && has_coordinate(b))
 		not_linear(c, node, "is not linear");
 	if (has_coordinate(a) || has_coordinate(b))
@@ -352,7 +352,8 @@ static struct value *kept_choices(struct collector *c, struct node *node, const 
 	if (a->rows != b->rows || a->columns != b->columns)
 		error(node->at, NULL, "sizes do not fit: %s and %s", shape_text(a), shape_text(b));
 	for (int i = 0; i < a->rows * a->columns; i++)
-		choice->cell[i] = kept_choice(c, node, condition, a->cell[i], b->cell[i]);
+		choice->cell[i] = (node->unexpanded ? unexpanded_choice : kept_choice)(c, node, condition, a->cell[i],
+										       b->cell[i]);
 	return choice;
 }
 

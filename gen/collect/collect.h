@@ -198,6 +198,11 @@ struct form *kept_component(struct collector *c, const struct node *node, struct
 			    const struct form *const *operand);
 struct form *kept_choice(struct collector *c, const struct node *node, const struct form *condition,
 			 const struct form *a, const struct form *b);
+/* Of what is not loads alone, one atom, whatever constants are in both and whether both are the same */
+struct form *unexpanded_product(struct collector *c, const struct node *node, const struct form *a,
+				const struct form *b);
+struct form *unexpanded_choice(struct collector *c, const struct node *node, const struct form *condition,
+			       const struct form *a, const struct form *b);
 /* A node that calls a function where another one stands: for messages, which show the place */
 const struct node *call_at(const struct node *node, enum function function, int count);
 struct form *kept_param(struct collector *c, const struct node *node, const struct symbol *param);

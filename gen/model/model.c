@@ -529,7 +529,8 @@ static void take_derivatives(void *context)
 	const struct request *request = b->request;
 	if (request->sensitivity && !parse_sensitivities(b->spec, source_argument(request->sensitivity)))
 		abandon();
-	add_derivatives(b->spec, request->again.derivatives_from, request->again.derivatives, request->again.jumps);
+	const struct again *again = &request->again;
+	add_derivatives(b->spec, again->derivatives_from, again->derivatives, again->jumps, again->remainder);
 }
 
 struct model *model_build(struct spec *spec, const struct request *request)

@@ -167,6 +167,7 @@ struct slope {                      /* a derivative; an error at `at` where it h
 	struct node **known;        /* likewise of what has a value: the derivative, once found */
 	struct symbol *time;        /* the derivative of t, at an event that moves; NULL: 0 */
 	const struct slope *event;  /* of what is watched for events */
+	bool unexpanded;            /* it has linear terms of linear ones alone */
 };
 struct node *slope_by(struct node *node, struct slope by);
 struct node *slope_of(struct node *node, struct place at);  /* in time */

@@ -98,6 +98,7 @@ struct node {
 	struct node **child;
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	bool each;                  /* of PRODUCT: of vectors component by component */
+	bool unexpanded;            /* of PRODUCT and CHOOSE: one factor of a remainder */
 	const struct node *follows; /* of friction: it is the derivative of this one, and acts where that does */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
 	const struct unit *unit;    /* of a SUM of one child: what stands behind it; else NULL */
@@ -384,7 +385,7 @@ bool is_constrained(const struct spec *spec, int component);
 bool parse_sensitivities(struct spec *spec, const struct source *source); /* of --sensitivity, instead of the spec's */
 /* To the spec, what so many derivatives follow: coordinates, equations, initial values, outputs behind its own */
 /* jumps: of formulas that the state, or a time that moves, chooses, too */
-void add_derivatives(struct spec *spec, int first, int count, bool jumps);
+void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder);
 
 /* ---- params.c: other values of params than the spec's ---- */
 

@@ -425,7 +425,23 @@ static void add_outputs(struct varying *v, int symbols)
 	}
 }
 
-struct extent { int symbols, equations, elements, energies, initials, components; bool timed; };
+/* The point of the operator moves too: with x_k at the derivative of its x the Jacobian's own follows. */
+static void add_fixed(struct varying *v, int fixeds)
+{
+	struct spec *spec = v->spec;
+	for (int i = 0; i < fixeds; i++) {
+		struct fixed made = spec->operators.fixed[i];
+		if (made.values != 1 || !made.symbol || made.symbol->kind != SYMBOL_COORD)
+			continue;
+		struct node *value = slope_by(made.value[0], v->by);
+		made.symbol = v->by.moved[made.symbol->number];
+		made.value = ARRAY(struct node *, 1);
+		made.value[0] = value;
+		*MORE(spec->operators.fixed, spec->operators.fixeds) = made;
+	}
+}
+
+struct extent { int symbols, equations, elements, energies, initials, components, fixeds; bool timed; };
 
 static void vary(struct varying *v, struct extent before)
 {
@@ -449,6 +465,7 @@ static void vary(struct varying *v, struct extent before)
 	for (int i = 0; i < spec->whens; i++)
 		add_when(v, &spec->when[i]);
 	add_initials_of(v, before.initials);
+	add_fixed(v, before.fixeds);
 	add_outputs(v, before.symbols);
 	if (spec->request.step && !is_zero_node(slope_by(spec->request.step, v->by)))
 		error(v->of->at, "--step gives the step another way", "the step follows from '%s'", v->of->name);
@@ -470,14 +487,15 @@ struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *b
 	return slope_by(delayed->when, slope);
 }
 
-void add_derivatives(struct spec *spec, int first, int count, bool jumps)
+void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder)
 {
 	if (count == 0)
 		return;
 	if (jumps)
 		watch_choices(spec, first, count);
 	const struct extent before = { spec->count.symbols, spec->equations, spec->elements, spec->lagrange.energies,
-				       spec->states.initials, spec->count.components, has_timed_events(spec) };
+				       spec->states.initials, spec->count.components, spec->operators.fixeds,
+				       has_timed_events(spec) };
 	spec->joined.columns = count;
 	spec->joined.own = before.components;
 	spec->joined.stride = before.components + before.timed;
@@ -486,7 +504,7 @@ void add_derivatives(struct spec *spec, int first, int count, bool jumps)
 	for (int i = first; i < first + count; i++) {
 		const struct sensitivity *s = &spec->sensitivity[i];
 		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };
-		v.by = (struct slope){ .at = s->at, .kind = SLOPE_PARAM, .name = s->name };
+		v.by = (struct slope){ .at = s->at, .kind = SLOPE_PARAM, .name = s->name, .unexpanded = remainder };
 		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;
 		vary(&v, before);
 	}

@@ -53,6 +53,14 @@ static struct node *times(struct node *factor, struct node *slope)
 	return product;
 }
 
+/* factor * slope, of factor^2 or the like, of which no linear term goes into an operator: none of this may either. */
+static struct node *unexpanded(struct node *factor, struct node *slope, const struct slope *by)
+{
+	struct node *product = times(factor, slope);
+	product->unexpanded = by->unexpanded && product->kind == NODE_PRODUCT;
+	return product;
+}
+
 static struct node *negative(struct node *node)
 {
 	struct node *sum = like(node, NODE_SUM);
@@ -249,7 +257,7 @@ static struct node *slope_of_power(struct node *node, const struct slope *by)
 		append(less, number(exponent, 1), true);
 		append(power, node->child[0], false);
 		append(power, less, false);
-		append(sum, times(exponent, times(power, base)), false);
+		append(sum, times(exponent, unexpanded(power, base, by)), false);
 	}
 	return sum->children ? sum : number(node, 0);
 }
@@ -269,20 +277,39 @@ static struct node *slope_of_dot(struct node *node, const struct slope *by)
 	return sum;
 }
 
-/* 1 + sign x^2 */
-static struct node *one_and_square(const struct node *node, struct node *x, bool minus)
+/* 1 + sign x */
+static struct node *one_and(const struct node *node, struct node *x, bool minus)
 {
 	struct node *sum = like(node, NODE_SUM);
 	append(sum, number(node, 1), false);
-	append(sum, times(x, x), minus);
+	append(sum, x, minus);
 	return sum;
 }
 
+static struct node *one_and_square(const struct node *node, struct node *x, bool minus)
+{
+	return one_and(node, times(x, x), minus);
+}
+
+/* Of tan and tanh; the constant of 1 - tanh^2 would be a linear term of the derivative that tanh itself has not. */
+static struct node *slope_of_tangent(struct node *node, struct node *inner, const struct slope *by)
+{
+	const bool minus = node->function == FN_TANH;
+	if (!by->unexpanded)
+		return times(one_and_square(node, node, minus), inner);
+	if (minus)
+		return times(unexpanded(one_and(node, node, true), one_and(node, node, false), by), inner);
+	struct node *cosine = call(node, FN_COS, node->child[0]);
+	return quotient(inner, times(cosine, cosine));
+}
+
 /* condition ? a : b, the condition x < y */
-static struct node *chosen(const struct node *node, struct node *x, struct node *y, struct node *a, struct node *b)
+static struct node *chosen(const struct node *node, struct node *x, struct node *y, struct node *a, struct node *b,
+			   const struct slope *by)
 {
 	struct node *less = like(node, NODE_COMPARE), *made = like(node, NODE_CHOOSE);
 	less->comparison = CMP_LT;
+	made->unexpanded = by->unexpanded;
 	append(less, x, false);
 	append(less, y, false);
 	append(made, less, false);
@@ -298,8 +325,8 @@ static struct node *slope_of_extreme(struct node *node, const struct slope *by)
 	for (int i = 1; i < node->children; i++) {
 		struct node *x = node->child[i], *y = best, *own = derivative(x, by);
 		bool least = node->function == FN_MIN;
-		slope = chosen(node, least ? x : y, least ? y : x, own, slope);
-		best = chosen(node, least ? x : y, least ? y : x, x, y);
+		slope = chosen(node, least ? x : y, least ? y : x, own, slope, by);
+		best = chosen(node, least ? x : y, least ? y : x, x, y, by);
 	}
 	return slope;
 }
@@ -315,9 +342,9 @@ static struct node *slope_of_clipped(struct node *node, const struct slope *by)
 		append(from_lo, below, true);
 		append(from_hi, inner, false);
 		append(from_hi, above, true);
-		return chosen(node, x, lo, from_lo, chosen(node, hi, x, from_hi, number(node, 0)));
+		return chosen(node, x, lo, from_lo, chosen(node, hi, x, from_hi, number(node, 0), by), by);
 	}
-	return chosen(node, x, lo, below, chosen(node, hi, x, above, inner));
+	return chosen(node, x, lo, below, chosen(node, hi, x, above, inner, by), by);
 }
 
 /* Of table(x; x0, y0; x1, y1; ...): of the line from point to point on which x is, the last ones going on */
@@ -337,7 +364,7 @@ static struct node *slope_of_table(struct node *node, const struct slope *by)
 		append(line, at[1], false);
 		append(line, times(quotient(high, wide), along), false);
 		line = derivative(line, by);
-		slope = slope ? chosen(node, x, at[2], line, slope) : line;
+		slope = slope ? chosen(node, x, at[2], line, slope, by) : line;
 	}
 	return slope;
 }
@@ -380,10 +407,10 @@ static struct node *slope_of_call(struct node *node, const struct slope *by)
 	case FN_DOT:  return slope_of_dot(node, by);
 	case FN_SIN:  return times(call(node, FN_COS, x), inner);
 	case FN_COS:  return negative(times(call(node, FN_SIN, x), inner));
-	case FN_TAN:  return times(one_and_square(node, node, false), inner);
+	case FN_TAN:
+	case FN_TANH: return slope_of_tangent(node, inner, by);
 	case FN_SINH: return times(call(node, FN_COSH, x), inner);
 	case FN_COSH: return times(call(node, FN_SINH, x), inner);
-	case FN_TANH: return times(one_and_square(node, node, true), inner);
 	case FN_EXP:  return times(node, inner);
 	case FN_LOG:  return quotient(inner, x);
 	case FN_SQRT: return quotient(inner, times(number(node, 2), node));
@@ -428,6 +455,7 @@ static struct node *slope_of_choice(struct node *node, const struct slope *by)
 	if (is_zero_node(first) && is_zero_node(second))
 		return first;
 	struct node *choice = like(node, NODE_CHOOSE);
+	choice->unexpanded = by->unexpanded;
 	append(choice, node->child[0], false);
 	append(choice, first, false);
 	append(choice, second, false);

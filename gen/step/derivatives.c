@@ -47,7 +47,8 @@ static struct request request_of_derivatives(const struct step *step, int first,
 	request.external = false;
 	if (step->model->request.external)
 		request.sensitivity = external_columns(step->model);
-	request.again = (struct again){ .derivatives_from = first, .derivatives = count, .jumps = has_jumps(step) };
+	request.again = (struct again){ .derivatives_from = first, .derivatives = count, .jumps = has_jumps(step),
+				  .remainder = step->is.flow == FLOW_RECIPE };
 	request.scheme = scheme_of_derivatives(step);
 	if (goes_apart(step))
 		request.prefix = format("%s_d%d", step->model->name, first);
