@@ -22,7 +22,7 @@ struct again {                      /* to build a model a second time, for build
 	bool by_regions;            /* a linear model as one of regions, of which it has one in each segment of time */
 	/* so many of the spec's derivatives, from the first on, as coordinates behind its own; 0: none */
 	int derivatives_from, derivatives;
-	bool jumps, remainder;      /* of formulas that jump, too; of the operator and of the remainder, each for itself */
+	bool jumps, remainder;      /* of formulas that jump, too; of the operator and the remainder each */
 	/* this param has that value, to see how the equations follow it; NULL: none has */
 	const char *varied;
 	mpq_srcptr value;
