@@ -170,9 +170,30 @@ events at most 2 a step
 END
 sed "s/20.max(x - z - 0.2, 0)/friction(x', 0.4)/" gap.spec >rub.spec
 sed 's/ + 20.max(x - z - 0.2, 0)//; $a stop between x, ground at 0.3 restitution 0.6' gap.spec >bounce.spec
+# which take most of what their bound adds up: looks; rows, with friction and a bounce on one mass
+cat >looks.spec <<'END'
+model looks
+coord x, y
+init x = -0.21, y = -0.8
+x'' + 0.1*x' + 140*x + 506*(x - y) + 225*max(x - y + 0.2, 0) = 0
+y'' + 0.5*y' + 0.76*y + 1410*(y - x) + 2340*max(y - 0.3, 0) = 0
+step 0.005
+events at most 2 a step
+END
+cat >rows.spec <<'END'
+model rows
+coord x
+init x = -0.6
+x'' + 2*x' + 0.861*x + friction(x', 0.1) = 3*cos(7.4*t)
+stop between x, ground at 0.3 restitution 0.3
+step 0.1
+events at most 1 a step
+END
 while read -r b real spec; do
     found "$spec" "$b" "$real" "$spec.spec"
 done <<'END'
+m4f float looks
+m4f float rows
 m4f float gap
 m4f double gap
 m7 double rub
