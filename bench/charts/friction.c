@@ -9,6 +9,9 @@
  *   exact               the step that plgen generates of specs/friction.spec
  *   CVODE ..., roots    from event to event: its root finding, a state machine of stick and slip, CVodeReInit
  *   tanh, ...           F tanh(x'/eps) instead, by CVODE and RK4; their own setting goes with eps
+ *   Moreau and Jean     time stepping: the theta method with theta = 1/2, whose impulse of friction is projected onto
+ *                       -h F .. h F so that velocity and friction at the end of a step agree; no events are sought.
+ *                       As fast as can be written: factors are made once, loads turn by a product in each step.
  *
  * Truth: sliding in closed form, in long double, its ends by bisection. Errors are of x, over its largest value.
  * A method sticks at an output where |x'| is at most 3 eps, or rounding where nothing is smoothed, for two outputs or
@@ -110,7 +113,7 @@ static void find_truth(struct truth_of_friction *truth)
 
 /* ---- ways ---- */
 
-enum how { EXACT, ROOTS, SMOOTH, STEPS };
+enum how { EXACT, ROOTS, SMOOTH, STEPS, PROJECTED };
 struct way {
 	const char *name;
 	enum how how;
@@ -191,6 +194,80 @@ static const struct kind bdf = {.method = BY_TOLERANCE("CVODE BDF, roots", 0, ""
                                 .formula = CV_BDF};
 static const struct method exact = {.name = "exact", .family = OURS};
 
+/* ---- time stepping ---- */
+
+struct stepping {
+	struct run run;
+	int steps;                      /* in a unit */
+	double h, x, v, c[2], s[2];     /* c, s: of the two loads, what they add to v in the step that follows */
+};
+
+/* m (v+ - v) = h (mean load - k (x + x+)/2) + p,  x+ = x + h (v + v+)/2,  p in -h F sgn v+ */
+static double mass_over(double h)
+{
+	return mass + h * h * spring / 4;
+}
+
+static void stepping_restart(struct run *run)
+{
+	struct stepping *m = (struct stepping *)run;
+	const double rate[] = { w, u }, size[] = { P, Q };
+	m->x = m->v = 0;
+	run->asked = 0;
+	for (int i = 0; i < 2; i++) {
+		const double half = rate[i] * m->h / 2, mean = size[i] * cos(half) * m->h / mass_over(m->h);
+		m->c[i] = mean * cos(half);
+		m->s[i] = mean * sin(half);
+	}
+}
+
+static bool stepping_advance(struct run *run, int units, double *rows)
+{
+	struct stepping *m = (struct stepping *)run;
+	const double h = m->h, over = mass_over(h), keep = 2 * mass / over - 1, pull = h * spring / over;
+	const double most = h * hold / over, cw = cos(w * h), sw = sin(w * h), cu = cos(u * h), su = sin(u * h);
+	double x = m->x, v = m->v, c0 = m->c[0], s0 = m->s[0], c1 = m->c[1], s1 = m->s[1];
+	for (int k = 0; k < units; k++) {
+		for (int i = 0; i < m->steps; i++) {
+			const double next0 = c0 * cw - s0 * sw, next1 = c1 * cu - s1 * su;
+			const double alone = keep * v + (c0 + c1 - pull * x);
+			const double then = alone - fmin(fmax(alone, -most), most);
+			s0 = s0 * cw + c0 * sw;
+			s1 = s1 * cu + c1 * su;
+			c0 = next0;
+			c1 = next1;
+			x += h / 2 * (v + then);
+			v = then;
+		}
+		if (rows) {
+			rows[2 * k] = x;
+			rows[2 * k + 1] = v;
+		}
+	}
+	run->asked += (long)units * m->steps;
+	*m = (struct stepping){ m->run, m->steps, h, x, v, { c0, c1 }, { s0, s1 } };
+	return isfinite(x);
+}
+
+static void stepping_close(struct run *run)
+{
+	free(run);
+}
+
+static struct run *stepping_open(const struct method *method, const struct problem *problem, double setting)
+{
+	struct stepping *m = room_for(1, sizeof *m);
+	m->run = (struct run){ .method = method, .problem = problem, .setting = setting, .restart = stepping_restart,
+	                       .advance = stepping_advance, .evaluations = run_evaluations, .close = stepping_close };
+	m->steps = steps_of(problem, setting);
+	m->h = problem->unit / m->steps;
+	stepping_restart(&m->run);
+	return &m->run;
+}
+
+static const struct method moreau_jean = {.name = "Moreau and Jean", .family = FIXED, .order = 1,
+                                          .open = stepping_open};
+
 /* Smoothing's step: m eps/F, the time of what is smoothed, or an output's; its tolerance: a hundredth of eps */
 static void way_open(struct way *way, const char *variants, const struct truth_of_friction *truth)
 {
@@ -198,9 +275,9 @@ static void way_open(struct way *way, const char *variants, const struct truth_o
 	way->problem = (struct problem){.name = "friction", .n = 1, .rhs_of = slope_of, .of = way, .jacobian = jacobian,
 	                                .start = start, .unit = unit, .units = UNITS, .scale_q = truth->peak,
 	                                .scale_v = truth->fastest};
-	way->eps = way->how == ROOTS ? 0 : way->setting;
-	const double setting = way->how == ROOTS ? way->setting : way->how == SMOOTH ? fmax(1e-10, way->eps / 100)
-	                       : unit / ceil(unit * hold / (mass * way->eps));
+	way->eps = way->how == SMOOTH || way->how == STEPS ? way->setting : 0;
+	const double setting = way->how == SMOOTH  ? fmax(1e-10, way->eps / 100)
+	                       : way->how == STEPS ? unit / ceil(unit * hold / (mass * way->eps)) : way->setting;
 	const char *file = text("%s/friction-%ld.so", variants, lround(unit / way->setting));
 	way->run = way->how == EXACT ? generated_open(way->method, &way->problem, file)
 		: way->method->open(way->method, &way->problem, setting);
@@ -218,7 +295,7 @@ static struct found compare(struct way *way, const struct truth_of_friction *tru
 	static bool sticks[UNITS + 2];
 	way->run->restart(way->run);
 	struct found found = { .failed = !way->run->advance(way->run, UNITS, rows) };
-	const double still = way->how == EXACT || way->how == ROOTS ? 1e-12 * truth->fastest : 3 * way->setting;
+	const double still = way->how == SMOOTH || way->how == STEPS ? 3 * way->setting : 1e-12 * truth->fastest;
 	for (int k = 0; k < UNITS; k++) {
 		const double error = fabs(rows[2 * k] - truth->x[k]) / truth->peak;
 		if (!(error <= found.largest))
@@ -265,6 +342,9 @@ static void list(struct ways *ways)
 	};
 	for (int parts = 1; parts <= 5; parts += 4)
 		ways->way[ways->count++] = (struct way){ .name = "exact", .method = &exact, .setting = unit / parts };
+	for (int parts = 1; parts <= 16384; parts *= 4)
+		ways->way[ways->count++] = (struct way){ .name = moreau_jean.name, .method = &moreau_jean,
+			.how = PROJECTED, .setting = unit / parts };
 	for (size_t i = 0; i < sizeof ladder / sizeof *ladder; i++)
 		for (int e = ladder[i].first; e <= ladder[i].last; e++)
 			ways->way[ways->count++] = (struct way){ .name = ladder[i].name, .how = ladder[i].how,
@@ -272,7 +352,7 @@ static void list(struct ways *ways)
 					: i == 0 ? &adams.method : &bdf.method };
 }
 
-static const char *const setting_is[] = { "step_s", "rtol", "eps_m_per_s", "eps_m_per_s" };
+static const char *const setting_is[] = { "step_s", "rtol", "eps_m_per_s", "eps_m_per_s", "step_s" };
 
 static void errors(struct ways *ways, const struct truth_of_friction *truth, const char *folder)
 {
