@@ -43,6 +43,7 @@ void check_worst(const struct step *step);                   /* leaves the state
 enum { WORST_PRODUCTS, WORST_SUMS, WORST_QUOTIENTS, WORST_KEPT, WORST_FORCED, WORST_LOOKED, WORST_ROWS, WORST_PIECES,
        WORST_EXPANSIONS, WORST_SERIES };
 const char *unbounded_series(const struct step *step);       /* as unbounded_text */
+double worst_of_calls(const struct step *step, int target);  /* in an expansion; NONE: it is not known */
 void count_worst_series(const struct step *step, double part[WORST_SERIES]);
 
 #endif

@@ -130,6 +130,7 @@ step 0.1
 scheme taylor 9
 END
 sed 's/taylor 9/taylor 12 over 3/' cubic.spec >over.spec
+sed "s/x^2.z'/z'/; s/0.4.(x - z)^3/0.4*sin(x - z)/" cubic.spec >swing.spec
 while read -r b real spec options; do
     # shellcheck disable=SC2086
     found "$spec $options" "$b" "$real" "$spec.spec" $options
@@ -147,6 +148,8 @@ m0 float cubic
 m4f float cubic
 m4f double over
 m7 double over
+m4f double swing --math own
+m7 double swing --math own
 END
 least=5
 sed "s/0.2.x'/0.2*x'*abs(x')/; s/taylor 9/taylor 7/; \$a events at most 2 a step" cubic.spec >drag.spec
