@@ -5,7 +5,7 @@
  *
  * It has no guard, for it is a part of the file that includes it, which says first what its `contacts` and its
  * `instant` are, and MOST, how many at rest it looks at together, in 3^MOST combinations; RESTING, where there may be
- * more, which it brings to agree by pivoting.  contacts: impacts, as
+ * more, which that file brings to agree.  contacts: impacts, as
  * impact[k] with its switching function, breakpoint, upward and restitution; h; max_events, most.
  * instant: a state and what stands of it, with time [s] after the start of the step, and chain.  The enclosed run of
  * the generator (gen/step/certify) goes by it, too, with limits of its own, and names of roots.h. */
@@ -118,12 +118,6 @@ static int agrees(const contacts *m, instant *at, const resting *r, int count, c
 #ifndef RESTING
 /* The state by the jump of impact k with restitution 0 */
 static void stop(const contacts *m, instant *at, int k);
-#endif
-
-#ifdef RESTING
-/* On which side of where it is held one of those at rest belongs, the others as they are: -1, 0, 1; hangs: in the
- * balance */
-static int side_of(const contacts *m, const instant *at, const resting *one, int *hangs);
 #endif
 
 /* ---- impacts that follow each other ---- */
@@ -313,9 +307,9 @@ static void stop_all(const contacts *m, instant *at, uint32_t set)
 }
 #endif
 
-/* Those of a set, as bits, come to rest together and with those that do, as far as they all can.  Returns those that
- * rest now. */
-static uint32_t lay(const contacts *m, instant *at, uint32_t set)
+/* Those of a set, as bits, come to rest together and with those that do, as far as they all can, listed at this
+ * time. */
+static void lay_down(const contacts *m, instant *at, uint32_t set, real time)
 {
     uint32_t laid;
     int k;
@@ -325,14 +319,6 @@ static uint32_t lay(const contacts *m, instant *at, uint32_t set)
     stop_all(m, at, set);
     laid = seat(m, at, set);
     keep(m, at);
-    return laid;
-}
-
-/* They come to rest, listed at this time. */
-static void lay_down(const contacts *m, instant *at, uint32_t set, real time)
-{
-    const uint32_t laid = lay(m, at, set);
-    int k;
     for (k = 0; k < m->impacts; k++) {
         if (laid >> k & 1) {
             count_rest(at);
@@ -466,32 +452,8 @@ static int combine(const resting *r, int count, int number, const int *before, i
 }
 
 #ifdef RESTING
-/* More than MOST of them, in `interval`, by block pivoting: all that do not agree change over together while that
- * leaves fewer of them, else the first of them alone, which ends where the Delassus matrix is a P-matrix.  0:
- * they do not come to agree. */
-static int pivot(const contacts *m, instant *at, const resting *r, int count, int *interval)
-{
-    enum { TURNS = 64, CHANCES = 4 };
-    int fewest = count + 1, chances = CHANCES, turn, i;
-    for (turn = 0; turn < TURNS * count; turn++) {
-        int to[RESTING], wrong = 0, hangs;
-        enter_all(m, at, r, count, interval);
-        for (i = 0; i < count; i++) {
-            to[i] = r[i].held + side_of(m, at, &r[i], &hangs);
-            wrong += to[i] != interval[i];
-        }
-        if (wrong == 0) {
-            return can_be(m, at);
-        }
-        chances = wrong < fewest ? CHANCES : chances - 1;
-        fewest = wrong < fewest ? wrong : fewest;
-        for (i = 0, wrong = 0; i < count && (chances > 0 || !wrong); i++) {
-            wrong = to[i] != interval[i];
-            interval[i] = to[i];
-        }
-    }
-    return 0;
-}
+/* More than MOST of them, in `interval`, brought to agree; 0: they do not come to */
+static int pivot(const contacts *m, instant *at, const resting *r, int count, int *interval);
 #else
 #define RESTING MOST
 #define pivot(m, at, r, count, interval) 0

@@ -80,15 +80,6 @@ static void vary_set(const pl_guards *m, instant *at, int set)
     }
 }
 
-static real slope_at(int degree, const real *e, real s)
-{
-    real slope = 0;
-    for (; degree > 0; degree--) {
-        slope = slope * s + (real)degree * e[degree];
-    }
-    return slope;
-}
-
 /* Of x - (e - b) back, put on the guard of an impact */
 static void vary_place(const pl_guards *m, instant *at, const pl_impact *impact, const real *back)
 {
@@ -128,22 +119,15 @@ static void miss(const pl_guards *m, const instant *at, int k, const real *e)
 {
     pl_variation *v = at->v;
     const real *row = m->guards.row + (ptrdiff_t)m->guard[k].row * m->size;
-    real low = 0, high = 1, size = 0;
+    real s, peak, size = 0;
     int i;
-    if (v == NULL || m->guard[k].impact < 0 || !(e[1] > 0) || !(slope_at(m->degree, e, 1) < 0)) {
+    if (v == NULL || m->guard[k].impact < 0 || !turns_back(m->degree, e, 1, &s, &peak)) {
         return;
-    }
-    for (i = 0; i < 40; i++) {
-        const real middle = (low + high) / 2;
-        *(slope_at(m->degree, e, middle) > 0 ? &low : &high) = middle;
     }
     for (i = 0; i < m->size; i++) {
         size += magnitude(row[i]) * larger(v->scale[i], magnitude(at->x[i]));
     }
-    for (i = m->degree, high = 0; i >= 0; i--) {
-        high = high * low + e[i];
-    }
-    if (pl_saltation_misses(size, m->limit[k] - high)) {
+    if (pl_saltation_misses(size, m->limit[k] - peak)) {
         pl_doubt_add(&v->doubt, PL_D_GRAZING, m->impact[m->guard[k].impact].expression, at->time);
     }
 }

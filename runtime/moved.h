@@ -220,35 +220,14 @@ static void arrive(const pl_events *m, pl_instant *at, const leaving *l)
     pl_doubt_add(at->doubt, l->leapt ? doubt & PL_D_UNDECIDED : doubt, l->function, at->time);
 }
 
-static real slope_at(int degree, const real *e, real s)
-{
-    real slope = 0;
-    for (; degree > 0; degree--) {
-        slope = slope * s + (real)degree * e[degree];
-    }
-    return slope;
-}
-
 /* A guard of an impact that is all but met, where it turns back: e over a piece, and its breakpoint */
 static void miss(const pl_events *m, const pl_instant *at, const column *e, int function, real b, real sign,
                  real end)
 {
-    const int degree = m->switching->degree;
-    real *work = at->work, low = 0, high = 1, gap;
-    int i;
-    rescale(e, end, work);
-    if (!(sign * slope_at(degree, work, low) > 0 && sign * slope_at(degree, work, high) < 0)) {
-        return;
-    }
-    for (i = 0; i < 40; i++) {
-        const real middle = (low + high) / 2;
-        *(sign * slope_at(degree, work, middle) > 0 ? &low : &high) = middle;
-    }
-    for (i = degree, high = 0; i >= 0; i--) {
-        high = high * low + work[i];
-    }
-    gap = sign * (b - high);
-    if (pl_saltation_misses(e->terms + magnitude(b), gap)) {
-        pl_doubt_add(at->doubt, PL_D_GRAZING, function, at->time + low * end * m->h);
+    real s, peak;
+    rescale(e, end, at->work);
+    if (turns_back(m->switching->degree, at->work, sign, &s, &peak) &&
+        pl_saltation_misses(e->terms + magnitude(b), sign * (b - peak))) {
+        pl_doubt_add(at->doubt, PL_D_GRAZING, function, at->time + s * end * m->h);
     }
 }

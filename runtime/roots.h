@@ -46,6 +46,35 @@ static real sizes(int n, const real *a, const real *b)
     return sum;
 }
 
+static inline real polynomial_slope(int degree, const real *e, real s)
+{
+    real slope = 0;
+    for (; degree > 0; degree--) {
+        slope = slope * s + (real)degree * e[degree];
+    }
+    return slope;
+}
+
+/* Whether sign times a polynomial rises at 0 and falls at 1: *at, where it turns back between them; *value: its own */
+static inline int turns_back(int degree, const real *e, real sign, real *at, real *value)
+{
+    real low = 0, high = 1;
+    int i;
+    if (!(sign * polynomial_slope(degree, e, low) > 0 && sign * polynomial_slope(degree, e, high) < 0)) {
+        return 0;
+    }
+    for (i = 0; i < 40; i++) {
+        const real middle = (low + high) / 2;
+        *(sign * polynomial_slope(degree, e, middle) > 0 ? &low : &high) = middle;
+    }
+    *at = low;
+    *value = 0;
+    for (i = degree; i >= 0; i--) {
+        *value = *value * low + e[i];
+    }
+    return 1;
+}
+
 /* What rounding may have done to a sum of terms of this size */
 static real noise_of(real terms)
 {

@@ -319,6 +319,18 @@ static void stop_all(const pl_events *m, pl_instant *at, uint32_t set)
     put_back(m, at, holds);
 }
 
+/* Takes away by row `row` of the derivatives what this watch is more than rounding off 0; whether it is */
+static int take_moved(const pl_events *m, pl_instant *at, int watch, int row)
+{
+    const column off = watched(m, at, watch);
+    if (!(magnitude(certain(&off)) > 0)) {
+        return 0;
+    }
+    take(m, at, row, m->moved->back, m->moved->back_watch, column_at(&off, 0));
+    renew(m, at);
+    return 1;
+}
+
 /* The derivatives of what is held are held with it: by oblique projections, until nothing moves any more. */
 static void keep_moved(const pl_events *m, pl_instant *at)
 {
@@ -329,20 +341,8 @@ static void keep_moved(const pl_events *m, pl_instant *at)
         for (i = 0; i < m->holds; i++) {
             for (k = 0; k < d->columns && holds_now(m, at, i); k++) {
                 const int row = i * d->columns + k, impact = m->hold[i].impact;
-                const column velocity = watched(m, at, d->velocity[row]);
-                if (magnitude(certain(&velocity)) > 0) {
-                    take(m, at, 2 * row, d->back, d->back_watch, column_at(&velocity, 0));
-                    renew(m, at);
-                    moving = 1;
-                }
-                if (impact >= 0) {
-                    const column place = watched(m, at, d->place[impact * d->columns + k]);
-                    if (magnitude(certain(&place)) > 0) {
-                        take(m, at, 2 * row + 1, d->back, d->back_watch, column_at(&place, 0));
-                        renew(m, at);
-                        moving = 1;
-                    }
-                }
+                moving |= take_moved(m, at, d->velocity[row], 2 * row);
+                moving |= impact >= 0 && take_moved(m, at, d->place[impact * d->columns + k], 2 * row + 1);
             }
         }
     }
@@ -511,102 +511,6 @@ static void follow(const pl_events *m, pl_instant *at, int jumped)
     renew(m, at);
 }
 
-/* ---- what is held, and what is not ---- */
-
-static int find_resting(const pl_events *m, const pl_instant *at, resting *found)
-{
-    int count = 0, i;
-    for (i = 0; i < m->holds && count < RESTING; i++) {
-        const pl_hold *h = &m->hold[i];
-        const int side = at->interval[h->expression] - h->interval;
-        if (side < -1 || side > 1) {
-            continue;
-        }
-        if (side != 0 && i != at->freed && !is_still(m, at, h->velocity)) {
-            continue;
-        }
-        if (side != 0 && i != at->freed && h->impact >= 0 && !touches(m, at, h->impact)) {
-            continue;
-        }
-        found[count].expression = h->expression;
-        found[count].held = h->interval;
-        found[count].impact = h->impact;
-        found[count++].hold = i;
-    }
-    return count;
-}
-
-/* Where friction slips of what a contact holds, by bits of all that is held: 1 or -1; 0: it is free to move */
-static int side_beside(const pl_events *m, uint64_t held, int hold)
-{
-    int i;
-    for (i = 0; i < m->conflicts; i++) {
-        if (m->conflict[i].hold == hold && ((held | (uint64_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
-            return m->conflict[i].side;
-        }
-    }
-    return 0;
-}
-
-static int side_of(const pl_events *m, const pl_instant *at, const resting *r, int *hangs)
-{
-    const pl_hold *h = &m->hold[r->hold];
-    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, held_now(m, at), r->hold);
-    int leaves;
-    *hangs = 0;
-    if (beside != 0) {
-        return beside;
-    }
-    /* Another impact has parted it; without one, a speed is what rounding has left. */
-    if (at->starting >= 0 && r->impact >= 0 && speed_of(m, at, r->impact) < 0) {
-        return free_of(m, r->impact) - r->held;
-    }
-    if (side == 0) {
-        return lets_go(m, at, r->hold, 1) > 0 ? 1 : lets_go(m, at, r->hold, 0) > 0 ? -1 : 0;
-    }
-    if ((side > 0 ? h->up : h->down) < 0) {
-        return 0;
-    }
-    leaves = lets_go(m, at, r->hold, side > 0);
-    *hangs = leaves == 0;
-    return leaves < 0 ? 0 : side;
-}
-
-static int agrees(const pl_events *m, pl_instant *at, const resting *r, int count, const int *interval)
-{
-    int agreed = 2, i;
-    for (i = 0; i < count; i++) {
-        at->interval[r[i].expression] = interval[i];
-    }
-    if (!can_be(m, at)) {
-        return 0;
-    }
-    renew(m, at);
-    for (i = 0; i < count && agreed != 0; i++) {
-        int hangs;
-        if (side_of(m, at, &r[i], &hangs) != interval[i] - r[i].held) {
-            agreed = 0;
-        } else if (hangs) {
-            agreed = 1;
-        }
-    }
-    return agreed;
-}
-
-static int is_pressed(const pl_events *m, const pl_instant *at, int impact)
-{
-    const int hold = m->impact[impact].hold;
-    int up, any = 0;
-    for (up = 0; up < 2; up++) {
-        if ((up ? m->hold[hold].up : m->hold[hold].down) >= 0) {
-            const column w = pull_of(m, at, hold, up);
-            if (!(certain(&w) < 0)) {
-                return 0;
-            }
-            any = 1;
-        }
-    }
-    return any;
-}
+#include "series_rest.h"
 
 #endif
