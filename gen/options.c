@@ -77,20 +77,6 @@ static void take_form(struct options *options, const char *value)
 		wrong_usage(format("--form takes auto, direct, delta, kick-drift-kick or modal, found '%s'", value));
 }
 
-static void take_accuracy(struct options *options, const char *value)
-{
-	if (strcmp(value, "compensated") != 0)
-		wrong_usage(format("--accuracy takes compensated, found '%s'", value));
-	options->request.compensated = true;
-}
-
-static void take_math(struct options *options, const char *value)
-{
-	if (strcmp(value, "own") != 0)
-		wrong_usage(format("--math takes own, found '%s'", value));
-	options->request.own_math = true;
-}
-
 static void take_loads(struct options *options, const char *value)
 {
 	const char *name = strcmp(value, "leftover") == 0 ? "remainder" : value; /* its name in earlier versions */
@@ -256,7 +242,8 @@ static const struct row {
 	const char *help;
 	void (*take)(struct options *options, const char *value);
 	const char *(*values)(const char *separator); /* closes the help */
-	/* without `take`: what is set to the value, to true; what is printed. All 0: it is a line of usage only */
+	/* without `take`: what is set to the value; to true, where there is an argument only by that word; what is
+	 * printed. All 0: it is a line of usage only */
 	size_t text, flag;
 	enum print print;
 } rows[] = {
@@ -295,9 +282,9 @@ static const struct row {
 	{ "real", "float", "numbers and arithmetic of type float (default: double)", .take = take_real },
 	{ "form", "NAME", "of a linear step: auto direct delta kick-drift-kick modal", .take = take_form },
 	{ "accuracy", "compensated", "two-word factors, and what rounding takes from the state is kept",
-	  .take = take_accuracy },
+	  .flag = AT(request.compensated) },
 	{ "math", "own", "sin, exp, pow and their kin of the runtime: the same bits on every target",
-	  .take = take_math },
+	  .flag = AT(request.own_math) },
 	{ "loads", "remainder", "leave known loads to the scheme's quadrature (default: exact)", .take = take_loads },
 	{ "sensitivity", "k,c,x", "also emit derivatives by params, initial values, inputs: NAME_step_d",
 	  .text = AT(request.sensitivity) },
@@ -451,6 +438,8 @@ static void take(const struct row *row, struct options *options, const char *val
 		row->take(options, value);
 	else if (row->text)
 		*(const char **)((char *)options + row->text) = value;
+	else if (row->flag && row->argument && strcmp(value, row->argument) != 0)
+		wrong_usage(format("--%s takes %s, found '%s'", row->name, row->argument, value));
 	else if (row->flag)
 		*(bool *)((char *)options + row->flag) = true;
 }

@@ -10,6 +10,7 @@
 void emit_banner(const struct emitter *e);
 const char **names_of_outputs(const struct emitter *e);             /* index_names.c: as the user knows them */
 const char **names_of_inputs(const struct emitter *e);
+const char **names_of_params(const struct tuning *tuning);
 /* enum { NAME_KIND_..., ... } */
 void emit_names_of(const struct emitter *e, const char *kind, const char *const *name, int count);
 void emit_index_names(const struct emitter *e);                    /* NAME_OUT_TIP and the like */

@@ -101,12 +101,8 @@ static void emit_names(const struct emitter *e, int inputs, const struct tuning 
 		emit_start_samples(e, inputs);
 	}
 	emit_name_list(e, "output_names", e->model->outputs, names_of_outputs(e));
-	if (!tunable)
-		return;
-	const char **name = ARRAY(const char *, (size_t)tunable->given);
-	for (int k = 0; k < tunable->given; k++)
-		name[k] = tunable->param[k].symbol->name;
-	emit_name_list(e, "param_names", tunable->given, name);
+	if (tunable)
+		emit_name_list(e, "param_names", tunable->given, names_of_params(tunable));
 }
 
 /* Of the size that errors are measured by */

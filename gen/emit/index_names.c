@@ -95,6 +95,14 @@ const char **names_of_outputs(const struct emitter *e)
 	return name;
 }
 
+const char **names_of_params(const struct tuning *tuning)
+{
+	const char **name = ARRAY(const char *, (size_t)tuning->given);
+	for (int k = 0; k < tuning->given; k++)
+		name[k] = tuning->param[k].symbol->name;
+	return name;
+}
+
 const char **names_of_inputs(const struct emitter *e)
 {
 	const char **name = ARRAY(const char *, (size_t)given_inputs(e));
@@ -110,10 +118,6 @@ void emit_index_names(const struct emitter *e)
 	emit_names_of(e, "X", e->step->shown->model->names.state, e->system->states);
 	emit_names_of(e, "IN", names_of_inputs(e), given_inputs(e));
 	emit_names_of(e, "OUT", names_of_outputs(e), e->model->outputs);
-	if (!tuning)
-		return;
-	const char **param = ARRAY(const char *, (size_t)tuning->given);
-	for (int k = 0; k < tuning->given; k++)
-		param[k] = tuning->param[k].symbol->name;
-	emit_names_of(e, "P", param, tuning->given);
+	if (tuning)
+		emit_names_of(e, "P", names_of_params(tuning), tuning->given);
 }

@@ -122,19 +122,19 @@ static bool follows_any(const struct choosing *c, const struct node *node)
 	return any;
 }
 
-/* x' = 1: so a time that moves with a param is met as a state's place is */
-static void add_clock(struct choosing *c, struct place at)
+/* A coordinate with x' = rate */
+static struct symbol *add_first_order(struct spec *spec, const char *name, struct place at, unsigned long rate)
 {
-	struct spec *spec = c->spec;
-	struct node *one = node_new(NODE_NUMBER, at);
-	c->clock = NEW(struct symbol);
-	*c->clock = (struct symbol){ .kind = SYMBOL_COORD, .name = "t_clock", .at = at, .used = true,
-				     .index = spec->count.components++ };
-	add_symbol(spec, c->clock);
+	struct symbol *s = NEW(struct symbol);
+	struct node *right = node_new(NODE_NUMBER, at);
+	*s = (struct symbol){ .kind = SYMBOL_COORD, .name = name, .at = at, .used = true,
+			      .index = spec->count.components++ };
+	add_symbol(spec, s);
 	spec->count.coords++;
-	mpq_set_ui(one->number, 1, 1);
-	*MORE(spec->equation, spec->equations) = (struct equation){ .at = at, .left = state_node(c->clock, 0, 1),
-								    .right = one };
+	mpq_set_ui(right->number, rate, 1);
+	*MORE(spec->equation, spec->equations) = (struct equation){ .at = at, .left = state_node(s, 0, 1),
+								    .right = right };
+	return s;
 }
 
 /* The same by the clock */
@@ -190,8 +190,8 @@ static void find_choices(struct choosing *c, struct node *node)
 		return;
 	struct node **test = &node->child[0];
 	const bool timed = !reads_states(*test) && reads_time(*test) && follows_any(c, *test);
-	if (timed && !c->clock)
-		add_clock(c, (*test)->at);
+	if (timed && !c->clock) /* so a time that moves with a param is met as a state's place is */
+		c->clock = add_first_order(c->spec, "t_clock", (*test)->at, 1);
 	if (timed)
 		*test = clocked(c, *test);
 	if (c->watched && reads_states(*test))
@@ -288,15 +288,7 @@ static bool has_timed_events(const struct spec *spec)
 /* The derivative of t, which is 0 but at an event: a coordinate of first order that nothing moves */
 static void add_time(struct varying *v)
 {
-	struct spec *spec = v->spec;
-	struct symbol *s = NEW(struct symbol);
-	*s = (struct symbol){ .kind = SYMBOL_COORD, .name = format("t_%s", v->suffix), .at = v->of->at, .used = true,
-			      .index = spec->count.components++ };
-	add_symbol(spec, s);
-	spec->count.coords++;
-	v->event.time = s;
-	*MORE(spec->equation, spec->equations) = (struct equation){ .at = v->of->at, .left = state_node(s, 0, 1),
-									  .right = node_new(NODE_NUMBER, v->of->at) };
+	v->event.time = add_first_order(v->spec, format("t_%s", v->suffix), v->of->at, 0);
 }
 
 static void add_when(struct varying *v, struct when *when)

@@ -119,14 +119,22 @@ static double *sorted(const struct emitter *e, const double *matrix, int block, 
 	return value;
 }
 
-void emit_to_modes(const struct emitter *e)
+/* The names of the tables, one of each block */
+static const char **emit_shape_tables(const struct emitter *e, const char *name, const char *what, bool to)
 {
 	const struct normal *m = normal_of_step(e);
 	const char **table = ARRAY(const char *, (size_t)m->blocks);
 	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_schedule_table(e, format("to_modes%d", b + 1),
-					   "Modal coordinates from coordinates: the inverse mode shapes, by columns",
-					   m->block[b].modes, m->block[b].rows, sorted(e, m->to, b, true));
+		table[b] = emit_schedule_table(e, format("%s%d", name, b + 1), what, m->block[b].modes,
+					       m->block[b].rows, sorted(e, to ? m->to : m->from, b, to));
+	return table;
+}
+
+void emit_to_modes(const struct emitter *e)
+{
+	const struct normal *m = normal_of_step(e);
+	const char **table = emit_shape_tables(
+		e, "to_modes", "Modal coordinates from coordinates: the inverse mode shapes, by columns", true);
 	open_function(e, "Modal coordinates of coordinates, or modal velocities of velocities",
 		      "static void $n_modes_of(int which, const double q[%d], double mode[%d])", m->modes, m->width);
 	say(e, "    int i;\n");
@@ -143,11 +151,8 @@ void emit_to_modes(const struct emitter *e)
 void emit_from_modes(const struct emitter *e)
 {
 	const struct normal *m = normal_of_step(e);
-	const char **table = ARRAY(const char *, (size_t)m->blocks);
-	for (int b = 0; b < m->blocks; b++)
-		table[b] = emit_schedule_table(e, format("from_modes%d", b + 1),
-					   "Coordinates from modal coordinates: mode shapes, by columns",
-					   m->block[b].modes, m->block[b].rows, sorted(e, m->from, b, false));
+	const char **table = emit_shape_tables(
+		e, "from_modes", "Coordinates from modal coordinates: mode shapes, by columns", false);
 	open_function(e, "Coordinates of modal coordinates, or velocities of modal velocities",
 		      "static void $n_of_modes(int which, const double mode[%d], double q[%d])", m->width, m->modes);
 	say(e, "    double x[%d];\n"
