@@ -298,7 +298,11 @@ static struct value *collect_product(struct collector *c, struct node *node)
 
 static struct form *collect_power(struct collector *c, struct node *node)
 {
-	struct form *base = collect_scalar(c, node->child[0]), *exponent = collect_scalar(c, node->child[1]);
+	const struct value *raised = collect_node(c, node->child[0]);
+	if (!is_scalar(raised))
+		error(node->child[0]->start, "a power is of a number: [q[1]^2; q[2]^2] has those of two components",
+		      "expected a scalar, found a %d x %d matrix", raised->rows, raised->columns);
+	struct form *base = raised->cell[0], *exponent = collect_scalar(c, node->child[1]);
 	if (!is_constant(exponent) && keeps(c))
 		return kept_power(c, node, base, exponent);
 	if (!is_constant(exponent))

@@ -36,6 +36,9 @@ void check_component(const struct symbol *symbol, int component, struct place at
 {
 	if (component == 0)
 		return;
+	if (symbol->kind == SYMBOL_LET || symbol->kind == SYMBOL_MATRIX)
+		error(at, format("dot([0; 1], %s) is the second of two", symbol->name),
+		      "only vector coordinates have components, and '%s' is a %s", symbol->name, symbol_kind(symbol));
 	if (symbol->kind != SYMBOL_COORD || symbol->length == 0)
 		error(at, "only vector coordinates have components", "'%s' is not a vector", symbol->name);
 	if (component > symbol->length)
