@@ -109,7 +109,9 @@ fi
 prepare m0 m4f m7
 chain 2 0.02 >two.spec
 chain 6 0.02 >six.spec
+chain 8 0.03 >eight.spec
 chain 14 0.02 >fourteen.spec
+sed 's/ = 0$/ = cos(3*t)/' fourteen.spec >driven.spec
 cat >loads.spec <<'END'
 model loads
 coord x, z, y
@@ -142,6 +144,8 @@ m4f float two
 m4f float six --accuracy compensated
 m4f float fourteen
 m7 double six
+m7 double eight
+m7 double driven
 m7 double loads --form direct
 m7 float fourteen
 m0 float cubic
