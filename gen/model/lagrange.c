@@ -144,19 +144,6 @@ static void visit(struct sweep *s, const struct atom *a)
 	}
 }
 
-/* Atoms are numbered in the order in which they are made: what is read has a lower number than its reader. */
-static void list_atoms(const struct form *form, const struct atom **atom)
-{
-	for (int i = 0; i < form->terms; i++) {
-		const struct atom *a = form->term[i].basis.atom;
-		if (!a || atom[a->index])
-			continue;
-		atom[a->index] = a;
-		for (int k = 0; k < a->operands; k++)
-			list_atoms(a->operand[k], atom);
-	}
-}
-
 static struct sweep sweep_back(struct building *b, const struct form *form, const struct form *seed, bool rates,
 			       struct form **force)
 {
@@ -167,8 +154,12 @@ static struct sweep sweep_back(struct building *b, const struct form *form, cons
 	s.rate = rates_new(&b->collector, rate_of_term, b);
 	for (int k = 0; k < 2; k++)
 		s.by[k] = ARRAY(struct form *, b->model->n);
-	list_atoms(form, atom);
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms + 1);
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		if ((*term)->basis.atom)
+			atom[(*term)->basis.atom->index] = (*term)->basis.atom;
 	spread(&s, form, seed);
+	/* numbered in the order in which they are made: what is read has a lower number than its reader */
 	for (int i = atoms - 1; i >= 0; i--)
 		if (atom[i] && s.adjoint[i])
 			visit(&s, atom[i]);
