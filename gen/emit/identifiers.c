@@ -60,10 +60,8 @@ static bool is_series_local(const char *name)
 
 static bool is_taken(const struct identifiers *c, const char *name)
 {
-	for (size_t i = 0; i < sizeof own_names / sizeof *own_names; i++)
-		if (strcmp(name, own_names[i]) == 0)
-			return true;
-	if (is_load_local(name))
+	if (place_among(sizeof own_names / sizeof *own_names, own_names, name, strlen(name)) >= 0 ||
+	    is_load_local(name))
 		return true;
 	for (const struct taken *t = c->taken[name_hash(name) % BUCKETS]; t; t = t->next)
 		if (strcmp(name, t->name) == 0)

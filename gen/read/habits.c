@@ -127,9 +127,8 @@ static const char *function_note(const char *name)
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
 		if (strcasecmp(name, habit[i].name) == 0)
 			return habit[i].note;
-	for (size_t i = 0; i < sizeof records / sizeof *records; i++)
-		if (strcmp(name, records[i]) == 0)
-			return "a recorded load is an input, whose samples the steps are given: input u hold first";
+	if (place_among(sizeof records / sizeof *records, records, name, strlen(name)) >= 0)
+		return "a recorded load is an input, whose samples the steps are given: input u hold first";
 	return NULL;
 }
 

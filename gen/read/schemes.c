@@ -43,9 +43,8 @@ const char *nearest_scheme(const char *name)
 		"newmark", "hht", "ode23", "ode45", "ode15s", "dopri5", "bdf", "bdf2", "ab2", "ab4", "cvode", "lsoda"
 	};
 	const char *known[SCHEMES];
-	for (size_t i = 0; i < sizeof other / sizeof *other; i++)
-		if (strcmp(name, other[i]) == 0)
-			return NULL;
+	if (place_among(sizeof other / sizeof *other, other, name, strlen(name)) >= 0)
+		return NULL;
 	for (int i = 0; i < SCHEMES; i++)
 		known[i] = rows[i].name;
 	return nearest_name(name, SCHEMES, known);
@@ -142,10 +141,7 @@ const char *step_form_name(enum step_form form)
 
 bool step_form_of(const char *name, enum step_form *form)
 {
-	for (int i = 0; i < STEP_FORMS; i++)
-		if (strcmp(name, names[i]) == 0) {
-			*form = (enum step_form)i;
-			return true;
-		}
-	return false;
+	const int place = place_among(STEP_FORMS, names, name, strlen(name));
+	*form = place < 0 ? *form : (enum step_form)place;
+	return place >= 0;
 }

@@ -51,10 +51,7 @@ static bool starts_definition(const struct parser *p)
 static bool is_place(struct token token)
 {
 	static const char *const word[] = { "at", "between", "on", "ground" };
-	for (int i = 0; i < 4; i++)
-		if (strcmp(token.name, word[i]) == 0)
-			return true;
-	return false;
+	return place_among(4, word, token.name, strlen(token.name)) >= 0;
 }
 
 /* What usually stands behind a token that fits nowhere. */
