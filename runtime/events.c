@@ -33,6 +33,19 @@ static int is_parting(const pl_events *m, const pl_instant *at, int k)
            depth(m, at, k, &noise) <= DEEP * rounding_of_places(m, at);
 }
 
+/* Whether it is the velocity of friction that a contact at rest leaves none: then it is but rounding. */
+static int is_braking(const pl_events *m, const pl_instant *at, int expression)
+{
+    int i;
+    for (i = 0; i < m->conflicts; i++) {
+        const int hold = m->conflict[i].hold;
+        if (hold >= 0 && m->hold[hold].expression == expression && side_beside(m, at, hold) != 0) {
+            return 1;
+        }
+    }
+    return 0;
+}
+
 /* A switching function outside of its interval, or what is held beyond what can */
 static int has_left(const pl_events *m, pl_instant *at)
 {
@@ -52,7 +65,8 @@ static int has_left(const pl_events *m, pl_instant *at)
                     return 1;
                 }
             }
-            if (hold >= 0 || k < 0 || k == d->breaks[i] || (at->last->expression == i && at->last->breakpoint == k)) {
+            if (hold >= 0 || k < 0 || k == d->breaks[i] || (at->last->expression == i && at->last->breakpoint == k) ||
+                is_braking(m, at, i)) {
                 continue;
             }
             off = off_start(&e, b[k], &noise);
@@ -132,7 +146,7 @@ static real first_event(const pl_events *m, pl_instant *at, real end, int *split
                     set_freed(m, at, hold, up);
                 }
             }
-            if (hold >= 0 || k < 0 || k == d->breaks[i]) {
+            if (hold >= 0 || k < 0 || k == d->breaks[i] || is_braking(m, at, i)) {
                 continue;
             }
             starting = impact_at(m, i, k, up);

@@ -428,6 +428,8 @@ typedef struct pl_hold {
 typedef struct pl_conflict {
     uint64_t set;
     int hold, side; /* number of that friction and its side; hold -1: no such friction */
+    int watch;      /* of which the side has the sign, as the way in which they go together follows the state; -1: it
+                     * does not */
 } pl_conflict;
 
 /* A guard of pl_guards: where row . x rises above its limit x jumps, and goes on in another region. */

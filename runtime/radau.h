@@ -374,14 +374,23 @@ static inline int PL(attempt)(PL_TYPE *s, const real start[], const real slope[]
                               real unit[PL_STATES], real poly[PL_STAGES + 1][PL_COLUMNS], real *factor)
 {
     real k[PL_UNKNOWNS], error;
-    int i, good;
+    int i, found, good;
     for (i = 0; i < PL_UNKNOWNS && !s->ready; i++) {
         k[i] = 0;
     }
     if (s->ready) {
         PL(continue)((const real (*)[PL_COLUMNS])s->poly, 1, size * s->per, s->per / PL_H, k);
     }
-    if (!PL(solve)(s, start, slope, jacobian, size, known, unit, k)) {
+    found = PL(solve)(s, start, slope, jacobian, size, known, unit, k);
+    if (!found && s->ready && rejected > 3) { /* what an event has cut short says nothing of what is far behind it */
+        for (i = 0; i < PL_UNKNOWNS; i++) {
+            k[i] = 0;
+        }
+        s->ready = 0;
+        found = PL(solve)(s, start, slope, jacobian, size, known, unit, k);
+        s->ready = 1;
+    }
+    if (!found) {
         return 0;
     }
     error = PL(finish)(s->start, size * PL_H, unit, k, poly, s->gain) + PL_NOTHING;

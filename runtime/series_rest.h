@@ -25,12 +25,14 @@ static int find_resting(const pl_events *m, const pl_instant *at, resting *found
 }
 
 /* Where friction slips of what a contact holds, by bits of all that is held: 1 or -1; 0: it is free to move */
-static int side_beside(const pl_events *m, uint64_t held, int hold)
+static int side_beside(const pl_events *m, const pl_instant *at, int hold)
 {
+    const uint64_t held = held_now(m, at) | (uint64_t)1 << hold;
     int i;
     for (i = 0; i < m->conflicts; i++) {
-        if (m->conflict[i].hold == hold && ((held | (uint64_t)1 << hold) & m->conflict[i].set) == m->conflict[i].set) {
-            return m->conflict[i].side;
+        const pl_conflict *c = &m->conflict[i];
+        if (c->hold == hold && (held & c->set) == c->set) {
+            return c->watch >= 0 && value_of(m, at, c->watch) < 0 ? -c->side : c->side;
         }
     }
     return 0;
@@ -39,7 +41,7 @@ static int side_beside(const pl_events *m, uint64_t held, int hold)
 static int side_of(const pl_events *m, const pl_instant *at, const resting *r, int *hangs)
 {
     const pl_hold *h = &m->hold[r->hold];
-    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, held_now(m, at), r->hold);
+    const int side = at->interval[r->expression] - r->held, beside = side_beside(m, at, r->hold);
     int leaves;
     *hangs = 0;
     if (beside != 0) {

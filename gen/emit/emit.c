@@ -6,6 +6,7 @@
 #include "emit/series/series.h"
 #include "steps.h"
 #include "emit/tunable/tunable.h"
+#include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "step/certify/certify.h"
 #include "step/series/switching.h"
@@ -118,6 +119,14 @@ static bool forms_need_math(const struct emitter *e)
 	for (int k = 0; k < model->schedule.operators; k++) {
 		const struct form *const *left = (const struct form *const *)model->schedule.operator[k].left;
 		math = math || reads_of(model, model->remainder.force_columns, left).math;
+	}
+	for (int i = 0; i < model->contacts.drags; i++) {
+		const struct form *const force[] = { model->contacts.drag[i].force, model->contacts.drag[i].rest };
+		math = math || reads_of(model, 2, force).math;
+	}
+	for (int i = 0; i < model->contacts.impacts; i++) {
+		const struct form *guard = model->contacts.impact[i].in->guard;
+		math = math || (guard && reads_of(model, 1, &guard).math);
 	}
 	return math;
 }

@@ -77,8 +77,11 @@ int moving_masses(const struct emitter *e)
 	if (rows == 0 || e->model->relative || !(steps_may_fail(e) || looks_at_masses(e)))
 		return 0;
 	const struct form **entry = entries(s, &count);
+	bool moves = false;
+	for (int i = 0; i < count; i++)
+		moves = moves || !is_constant(entry[i]);
 	const struct reads r = reads_of(e->model, count, entry);
-	return any_of(r.input, 2 * e->system->inputs) ? 0 : rows;
+	return !moves || any_of(r.input, 2 * e->system->inputs) ? 0 : rows;
 }
 
 bool may_be_singular(const struct emitter *e)

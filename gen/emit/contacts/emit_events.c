@@ -233,11 +233,11 @@ void emit_event_tables(const struct emitter *e)
 	emit_holds(e);
 	emit_series_impacts(e);
 	for (int i = 0; i < c->conflicts; i++)
-		conflict = format("%s%s{%lluu, %d, %d}", conflict, i ? ", " : "",
+		conflict = format("%s%s{%lluu, %d, %d, %d}", conflict, i ? ", " : "",
 				  (unsigned long long)c->conflict[i].set, watch_or_none(c->conflict[i].hold),
-				  c->conflict[i].side);
+				  c->conflict[i].side, watch_or_none(c->conflict[i].watch));
 	say(e, "static const pl_conflict $n_event_conflict[] = {%s};  /* what cannot be held all at once */\n",
-	    *conflict ? conflict : "{0u, -1, 0}");
+	    *conflict ? conflict : "{0u, -1, 0, -1}");
 	emit_moved(e);
 	emit_events(e, "events", "series_switching", "event_watch");
 }

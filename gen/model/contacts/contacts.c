@@ -26,23 +26,12 @@ static int drag_of(const struct model *model, const struct atom *atom)
 	return index;
 }
 
-static bool is_piecewise_or_root(enum function function)
-{
-	return function == FN_SQRT || function == FN_ABS || function == FN_SGN || function == FN_MIN ||
-	       function == FN_MAX || function == FN_CLIP || function == FN_DEADZONE || function == FN_TABLE;
-}
-
 /* Whether it reads multipliers, with which its force is solved for */
 static bool reads_multipliers(const struct building *b, const struct node *node, const struct form *force)
 {
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	bool reads = false;
 	for (const struct form_term **term = terms_within(force, seen); *term; term++) {
-		const struct atom *a = (*term)->basis.atom;
-		if (a && a->highest && a->kind == ATOM_CALL && !is_piecewise_or_root(a->function))
-			error(node->start, "sums, products, ratios, powers, sqrt and what is piecewise linear are",
-			      "friction by such a function of multipliers, '%s', is not built",
-			      text_between(node->start, node->end));
 		if (!is_highest(&b->model->frame, &(*term)->basis))
 			continue;
 		reads = true;

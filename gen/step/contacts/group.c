@@ -19,19 +19,20 @@ static double dot_samples(const struct constraints *all, int a, int b)
 	return sum;
 }
 
-/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. */
-static int side_beside(const struct constraints *all, int friction, int contact)
+/* Of friction that a contact at rest leaves no velocity: it brakes what the contact stops, and so slips that way. Where
+ * they go together by way of a constraint that way follows the state. */
+static void find_side_beside(const struct constraints *all, int contact, struct conflict *c)
 {
-	const struct entry *delassus = &all->constraint[friction].delassus[contact];
-	bool along = is_number_entry(delassus) ? mpq_sgn(delassus->number) < 0
-					       : dot_samples(all, friction, contact) > 0;
-	return along == all->c->hold[friction].above ? 1 : -1;
+	const struct entry *delassus = &all->constraint[c->hold].delassus[contact];
+	const bool along = is_number_entry(delassus) && mpq_sgn(delassus->number) < 0;
+	c->side = along == all->c->hold[c->hold].above ? 1 : -1;
+	c->watch = is_number_entry(delassus) ? NONE : watch(all->w, delassus->sequence, false);
 }
 
 void note_conflict(const struct constraints *all, int count, const int *which)
 {
 	struct contacts *c = all->c;
-	struct conflict new = { .hold = NONE };
+	struct conflict new = { .hold = NONE, .watch = NONE };
 	for (int i = 0; i < count; i++)
 		new.set |= (uint64_t)1 << which[i];
 	for (int i = 0; i < c->conflicts; i++)
@@ -49,7 +50,7 @@ void note_conflict(const struct constraints *all, int count, const int *which)
 		      "determined");
 	if (count == 2 && frictions == 1) {
 		new.hold = which[at];
-		new.side = side_beside(all, which[at], which[!at]);
+		find_side_beside(all, which[!at], &new);
 	}
 	*MORE(c->conflict, c->conflicts) = new;
 }

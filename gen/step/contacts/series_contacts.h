@@ -38,6 +38,7 @@ struct series_impact {                     /* an impact */
 struct conflict {                   /* holds that cannot be all at once */
 	uint64_t set;          /* as bits */
 	int hold, side;             /* friction of what a contact holds: 1 or -1, where it slips then; NONE: others */
+	int watch;                  /* of which the side has the sign; NONE: it is the same everywhere */
 };
 struct series_jump { int state, watch; }; /* a state takes the value of what is watched */
 struct contacts {

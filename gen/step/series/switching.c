@@ -295,4 +295,6 @@ void sort_watches(struct contacts *c, int states)
 	}
 	for (int i = 0; i < c->assignments; i++)
 		renumber(place, &c->assignment[i].watch);
+	for (int i = 0; i < c->conflicts; i++)
+		renumber(place, &c->conflict[i].watch);
 }
