@@ -239,10 +239,16 @@ struct stream *stream_of(int n, const mpq_t *A, mpq_srcptr h, int precision);
 void stream_free(struct stream *f);
 /* The Taylor polynomial of x from these on, its remainder for 0 <= s <= 1.0001 in term[0]; returns its degree */
 int  stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struct series_room *room);
+/* Of all x whose entries are at most width_i 2^unit from those `core` was expanded from, to that degree */
+void stream_widen(const struct stream *f, const struct series_room *core, int degree, const double *width,
+		  long unit, mpq_srcptr tau, struct series_room *room);
 void stream_sum(const struct stream *f, const struct series_room *room, int degree, mpfr_srcptr s, mpfi_t *x);
 /* From the equations `before` to those `after`, at a time within delta of now: x as `after` would have it now; NULL:
  * as it is then. False: that is too long to be known */
 bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x);
+bool stream_change_within(const struct stream *before, const struct stream *after, mpfi_srcptr time, mpfi_t *x);
+double stream_rates(const struct stream *before, const struct stream *after); /* of both, by the scales of before */
+void stream_slope(const struct stream *f, const mpfi_t *x, mpfi_t *slope);      /* A x */
 void stream_pieces(struct stream *f, int power, const mpfi_t *x, mpfi_t *y);       /* y = e^{A piece 2^power} x */
 void series_room_free(struct series_room *room);
 

@@ -3,6 +3,7 @@
 #include "math/math.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { SWEEPS = 30, FARTHEST = 200 };
 
@@ -113,7 +114,7 @@ static void scaled_size(const struct stream *f, const mpfi_t *x, mpfr_ptr size)
 	}
 }
 
-static void product(const struct stream *f, const mpfi_t *x, mpfi_t *y)
+void stream_slope(const struct stream *f, const mpfi_t *x, mpfi_t *y)
 {
 	INTERVAL part = OVER_BITS(f->precision);
 	for (int i = 0; i < f->n; i++) {
@@ -183,7 +184,7 @@ int stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struc
 		mpfi_set(term_at(f, room, 0)[i], x[i]);
 	while (!is_done(f, room, &t, m)) {
 		mpfi_t *next = term_at(f, room, m + 1);
-		product(f, room->term[m], next);
+		stream_slope(f, room->term[m], next);
 		m++;
 		for (int i = 0; i < f->n; i++) {
 			mpfi_mul(next[i], next[i], t.tau);
@@ -194,6 +195,45 @@ int stream_expand(const struct stream *f, const mpfi_t *x, mpq_srcptr tau, struc
 	mpfr_clears(t.size, t.largest, NULL);
 	mpfi_clear(t.tau);
 	return m;
+}
+
+static void take_term(const struct stream *f, const struct series_room *core, int m, const double *width,
+		      long unit, struct series_room *room)
+{
+	REAL radius = WITH_BITS(64);
+	mpfi_t *term = term_at(f, room, m);
+	for (int i = 0; i < f->n; i++) {
+		mpfr_set_d(radius, width[i], MPFR_RNDU);
+		mpfr_mul_2si(radius, radius, unit, MPFR_RNDU);
+		mpfi_set(term[i], core->term[m][i]);
+		mpfi_increase(term[i], radius);
+	}
+}
+
+/* What follows the last term shrinks by half at least, as stream_expand has seen to. */
+void stream_widen(const struct stream *f, const struct series_room *core, int degree, const double *width,
+		  long unit, mpq_srcptr tau, struct series_room *room)
+{
+	SCRATCH double *term = ARRAY(double, f->n), *next = ARRAY(double, f->n), *first = ARRAY(double, f->n);
+	const double time = mpq_get_d(tau) * (1 + 1e-9);
+	double size = 0;
+	memcpy(term, width, (size_t)f->n * sizeof *term);
+	(void)term_at(f, room, 0);
+	for (int m = 1; m <= degree + 1; m++) {
+		for (int i = 0; i < f->n; i++) {
+			next[i] = 0;
+			for (int k = f->first[i]; k < f->first[i + 1]; k++)
+				next[i] += f->size[i * f->n + f->column[k]] * term[f->column[k]] * time / m;
+		}
+		memcpy(term, next, (size_t)f->n * sizeof *term);
+		if (m <= degree)
+			take_term(f, core, m, term, unit, room);
+	}
+	for (int i = 0; i < f->n; i++)
+		size = fmax(size, 2.5 * term[i] / f->scale[i]);
+	for (int i = 0; i < f->n; i++)
+		first[i] = (width[i] + size * f->scale[i]) * (1 + 1e-9);
+	take_term(f, core, 0, first, unit, room);
 }
 
 void stream_sum(const struct stream *f, const struct series_room *room, int degree, mpfr_srcptr s, mpfi_t *x)
@@ -207,24 +247,26 @@ void stream_sum(const struct stream *f, const struct series_room *room, int degr
 	}
 }
 
+double stream_rates(const struct stream *before, const struct stream *after)
+{
+	return (before->rate + (after ? largest_row(before, after->size) : 0)) * (1 + 1e-9);
+}
+
 /* To the time of the change and back, by Taylor: x + s (A_before - A_after) x and what is of second order in s. Where
  * both give x the same derivative but for its own width, nothing of first order is lost. */
-bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x)
+bool stream_change_within(const struct stream *before, const struct stream *after, mpfi_srcptr time, mpfi_t *x)
 {
 	INTERVALS *old = enclosures(before->n, before->precision), *new = enclosures(before->n, before->precision);
-	const double rates = (before->rate + (after ? largest_row(before, after->size) : 0)) * (1 + 1e-9);
 	REAL angle = WITH_BITS(64), size = WITH_BITS(64);
-	INTERVAL time = OVER_BITS(64);
-	mpfr_neg(&time->left, delta, MPFR_RNDD);
-	mpfr_set(&time->right, delta, MPFR_RNDU);
-	mpfr_mul_d(angle, delta, rates, MPFR_RNDU);
+	mpfi_mag(angle, time);
+	mpfr_mul_d(angle, angle, stream_rates(before, after), MPFR_RNDU);
 	scaled_size(before, x, size);
 	mpfr_mul(size, size, angle, MPFR_RNDU);
 	mpfr_mul(size, size, angle, MPFR_RNDU);
 	mpfr_mul_2ui(size, size, 1, MPFR_RNDU);
-	product(before, x, old);
+	stream_slope(before, x, old);
 	if (after)
-		product(after, x, new);
+		stream_slope(after, x, new);
 	for (int i = 0; i < before->n; i++) {
 		mpfi_sub(old[i], old[i], new[i]);
 		mpfi_mul(old[i], old[i], time);
@@ -232,6 +274,15 @@ bool stream_change(const struct stream *before, const struct stream *after, mpfr
 	}
 	widen_all(before, x, size);
 	bool short_enough = mpfr_cmp_d(angle, 0.5) <= 0;
+	return short_enough;
+}
+
+bool stream_change(const struct stream *before, const struct stream *after, mpfr_srcptr delta, mpfi_t *x)
+{
+	INTERVAL time = OVER_BITS(64);
+	mpfr_neg(&time->left, delta, MPFR_RNDD);
+	mpfr_set(&time->right, delta, MPFR_RNDU);
+	bool short_enough = stream_change_within(before, after, time, x);
 	return short_enough;
 }
 

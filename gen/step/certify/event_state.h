@@ -8,6 +8,7 @@
 struct event_state {                /* of what happens at one instant */
 	const struct guard *met;    /* NULL: none */
 	mpfr_srcptr off;            /* how far from base it may be; NULL: nothing is listed */
+	int before;                 /* the region before it */
 	unsigned acted;             /* impacts that have acted, as bits */
 	int begins;                 /* the impact whose guard was met, before it acts; -1 */
 	int doubtful;               /* the contact of which it is not known whether a force presses it; -1: none */

@@ -170,7 +170,7 @@ static int interval_of(const contacts *m, const instant *t, int expression)
 
 static int interval_before(const contacts *m, const instant *t, int expression)
 {
-	return interval_in(m, t->before, expression);
+	return interval_in(m, t->event_state->before, expression);
 }
 
 static void go_to(const contacts *m, instant *t, int expression, int interval)
@@ -496,7 +496,7 @@ static const struct law *begin(struct trajectory *t, const struct guard *guard, 
 	t->event_state->begins = t->event_state->doubtful = -1;
 	t->event_state->flies = t->event_state->together = false;
 	t->time = mpq_get_d(t->base);
-	t->before = t->region;
+	t->event_state->before = t->region;
 	t->chain.all = 0;
 	return m;
 }
@@ -507,7 +507,7 @@ static void note_touching(const struct law *m, struct trajectory *t)
 {
 	for (int k = 0; k < m->impacts; k++) {
 		const struct bound *b = &m->impact[k];
-		const bool rested = b->rest >= 0 && interval_in(m, t->before, b->expression) == b->rest,
+		const bool rested = b->rest >= 0 && interval_in(m, t->event_state->before, b->expression) == b->rest,
 			   acted = t->event_state->acted >> k & 1 && !(b->restitution > 0);
 		if (b->rest < 0 || !(rested || acted) || rests(m, t, k) || !touches(m, t, k) ||
 		    fabs(speed_of(m, t, k)) > 0)
@@ -525,7 +525,7 @@ bool trajectory_resolve(struct trajectory *t, const struct guard *guard, mpfr_sr
 {
 	const struct law *m = begin(t, guard, off);
 	if (guard)
-		t->before -= guard->leads;
+		t->event_state->before -= guard->leads;
 	resolve(m, t, guard != NULL);
 	note_touching(m, t);
 	return !t->undecided && trajectory_slide(t, guard, off);

@@ -167,6 +167,13 @@ static bool bounces(const struct trajectory *t, const struct guard *guard)
 	return guard->impact >= 0 && t->s->impact[guard->impact].bounces;
 }
 
+/* Whether what may be at one instant goes one after the other: impacts touch by what was found; what lets go does so
+ * before an impact. */
+static bool is_met_with(const struct trajectory *t, const struct guard *guard, const struct guard *found)
+{
+	return (bounces(t, guard) && (bounces(t, found) || found->release)) || (guard->release && bounces(t, found));
+}
+
 /* 1: found; -1: not known; 0: none */
 int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const struct guard **found, mpfi_ptr at)
 {
@@ -187,9 +194,11 @@ int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const str
 			terms = divide_by_power(t, degree, order, fresh, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
 					    root);
-		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && bounces(t, guard) &&
-		    bounces(t, *found)) /* by an impact of what was found, where it touches then */
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && is_met_with(t, guard, *found)) {
+			if (guard->release)
+				*found = guard;
 			continue;
+		}
 		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && is_none(t, terms, !fresh)) {
 			t->resting[guard->function] = true;     /* let go by no force */
 			continue;
@@ -233,7 +242,7 @@ static bool shorten_base(struct trajectory *t, const struct stream *flow, mpfr_p
 	mpz_set_ui(mpq_denref(t->base), 1);
 	mpq_div_2exp(t->base, t->base, bits);
 	mpfr_add(off, off, least, MPFR_RNDU);
-	return stream_change(flow, NULL, least, t->x);
+	return stream_change(flow, NULL, least, t->deviation->core) && stream_change(flow, NULL, least, t->x);
 }
 
 /* What sticks and slips behind it */
@@ -258,8 +267,10 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 		mpfr_set_ui(s, 1, MPFR_RNDN);
 	if (mpfr_cmp_ui(&at->left, 0) <= 0)
 		mpfr_set_zero(s, 1);
+	bool crossed = false;
 	width_of(at, s, tau, off);
-	stream_sum(before, &t->piece.room, degree, s, t->x);
+	deviation_over_part(t, degree, tau, s);
+	deviation_take(t);
 	mpfr_get_q(part, s);
 	mpq_mul(part, part, tau);
 	mpq_add(t->base, t->base, part);
@@ -271,12 +282,14 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 		known = known && trajectory_impact(t, guard, off);
 	} else {
 		trajectory_enter(t, t->region + guard->leads);
-		known = known && stream_change(before, t->at->flow, off, t->x);
+		crossed = known && !has_events(t->s) && deviation_cross(t, guard, before, off);
+		known = known && (crossed || stream_change(before, t->at->flow, off, t->x));
 		if (has_events(t->s))
 			known = known && resolve(t, guard, off);
 	}
 	trajectory_hold(t);
 	trajectory_loads(t);
+	(crossed ? deviation_loads : deviation_renew)(t);
 	if (!known)
 		return t->undecided ? false : trajectory_lost(t, guard, "when is not known well enough");
 	if (t->noted.most > 0 && t->noted.count >= t->noted.most)

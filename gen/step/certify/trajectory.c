@@ -41,7 +41,7 @@ static void step_on_grid(struct trajectory *t, mpfi_t *y)
 	if (!t->grid.met) {
 		t->grid.met = true;
 		t->grid.pieces = 0;
-		keep(t, t->x, t->grid.slot[TRAJECTORY_SLOTS]);
+		keep(t, t->deviation->core, t->grid.slot[TRAJECTORY_SLOTS]);
 	}
 	unsigned long next = t->grid.pieces + 1;
 	unsigned long from = next & (next - 1);
@@ -51,17 +51,19 @@ static void step_on_grid(struct trajectory *t, mpfi_t *y)
 	keep(t, y, t->grid.slot[power]);
 }
 
-static void arrive(struct trajectory *t, mpq_srcptr tau, bool full, const mpfi_t *y)
+static void arrive(struct trajectory *t, mpq_srcptr tau, bool full)
 {
-	keep(t, y, t->x);
+	deviation_take(t);
 	mpq_add(t->base, t->base, tau);
 	t->piece.at_once = 0;
 	t->grid.pieces++;
 	for (int e = 0; e < t->s->functions; e++)
 		t->fresh.order[e] = 0;
 	t->grid.met = t->grid.met && full;
-	if (!full)
-		trajectory_loads(t);
+	if (full)
+		return;
+	trajectory_loads(t);
+	deviation_loads(t);
 }
 
 static bool move(struct trajectory *t, mpq_srcptr target)
@@ -74,19 +76,20 @@ static bool move(struct trajectory *t, mpq_srcptr target)
 		return trajectory_unknown(t, "where it goes: rates or loads are too large");
 	piece_at(t, target, tau, &full);
 	if (full) {
-		step_on_grid(t, t->y);
-		if (trajectory_event_free(t, t->y, mpq_get_d(tau))) {
-			arrive(t, tau, true, t->y);
+		step_on_grid(t, t->deviation->next_core);
+		deviation_over_piece(t);
+		if (trajectory_event_free(t, t->deviation->next_x, mpq_get_d(tau))) {
+			arrive(t, tau, true);
 			return true;
 		}
 	}
 	INTERVAL at = OVER_BITS(t->precision);
-	int degree = stream_expand(t->at->flow, t->x, tau, &t->piece.room);
+	int degree = deviation_expand(t, tau);
 	int found = trajectory_first(t, degree, tau, &guard, at);
 	if (found == 0 && !full)
-		stream_sum(t->at->flow, &t->piece.room, degree, t->piece.one, t->y);
+		deviation_over_part(t, degree, tau, t->piece.one);
 	if (found == 0)
-		arrive(t, tau, full, t->y);
+		arrive(t, tau, full);
 	return found == 0 || (found > 0 && trajectory_pass(t, guard, degree, tau, at));
 }
 
@@ -94,16 +97,19 @@ static bool move(struct trajectory *t, mpq_srcptr target)
 
 static bool next_segment(struct trajectory *t)
 {
+	REAL none = WITH_BITS(64);
+	bool known = true;
+	mpfr_set_zero(none, 1);
 	t->when.segment++;
 	trajectory_loads(t);
 	t->grid.met = false;
-	if (t->s->segments == 1)
-		return true;
-	trajectory_enter(t, t->region + regions_at_once(t->s));
-	t->noted.speed = 0;
-	REAL none = WITH_BITS(64);
-	mpfr_set_zero(none, 1);
-	return trajectory_take_up(t, none);
+	if (t->s->segments > 1) {
+		trajectory_enter(t, t->region + regions_at_once(t->s));
+		t->noted.speed = 0;
+		known = trajectory_take_up(t, none);
+	}
+	deviation_renew(t);
+	return known;
 }
 
 static bool changes_here(const struct trajectory *t)
@@ -174,6 +180,7 @@ static void make_room(struct trajectory *t)
 		t->piece.near[k] = (struct near){ ARRAY(double, t->n), ARRAY(double, t->n) };
 	t->piece.most = ARRAY(double, t->n);
 	mpq_init(t->base);
+	deviation_make(t);
 	t->event_state = NEW(struct event_state);
 	mpfi_init2(t->event_state->flight, t->precision);
 	mpfr_init2(t->fresh.off, 64);
@@ -201,6 +208,7 @@ struct trajectory *trajectory_start(const struct model *full, const struct regio
 	while (t->when.segment + 1 < t->when.segments && mpq_sgn(t->when.change[t->when.segment]) <= 0)
 		t->when.segment++;
 	trajectory_place(t);
+	deviation_renew(t);
 	return t;
 }
 
@@ -240,6 +248,7 @@ void trajectory_free(struct trajectory *t)
 		free_room(t->n, t->grid.slot[k]);
 	for (int k = 0; k < t->noted.count; k++)
 		mpfi_clear(t->noted.list[k].at);
+	deviation_free(t);
 	free_room(t->n, t->x);
 	free_room(t->n, t->y);
 	series_room_free(&t->piece.room);

@@ -7,6 +7,7 @@
 #include "model/linear/linear.h"
 
 struct event_state;
+struct deviation;
 
 /* What so many bits do not tell apart is one: two instants, a force and its limit. */
 enum { TRAJECTORY_SLOTS = 64, BITS_OF_ONE = 768 };
@@ -75,6 +76,7 @@ struct trajectory {
 	bool *resting; /* per switching function: it stands on a breakpoint, exactly, while the region stays */
 	mpq_t base;                 /* [s] */
 	mpfi_t *x, *y;              /* x at that time, in the equations of `at` */
+	struct deviation *deviation;
 	mpq_t *exact;               /* x at the start; NULL: it is not rational */
 	struct trajectory_grid grid;
 	struct trajectory_piece piece;
@@ -82,7 +84,6 @@ struct trajectory {
 	struct trajectory_list noted;
 	/* Of impacts.c: */
 	double time;                /* base [s] */
-	int before;                 /* the region before what happens now */
 	pl_chain chain;
 	const struct law *law;      /* impacts of this segment of time; NULL: none yet */
 	struct event_state *event_state;
@@ -101,6 +102,34 @@ void trajectory_enter(struct trajectory *t, int region);
 void trajectory_loads(struct trajectory *t);                 /* load states at base */
 const char *trajectory_time(mpq_srcptr time);
 bool trajectory_lost(struct trajectory *t, const struct guard *guard, const char *what); /* false: it is not known */
+
+/* ---- deviation.c: x as a core that is known to rounding, and how far it may be off that ---- */
+
+struct deviation {
+	mpfi_t *core, *next_core;   /* here; behind what is tried */
+	struct turned_box {         /* off by Q r, |r_k| at most radius_k 2^unit; Q orthogonal but for rounding */
+		long unit;
+		double *axis, *radius; /* axis: columns of Q, one after the other; where the radius is 0, any */
+	} now, next;
+	mpfi_t *next_x;             /* next_core and next */
+	struct map {                /* n x n: what takes the deviation on, and how far off its entries may be */
+		double *entry, *slack;
+	} map, *piece;              /* piece: per system, over a piece; NULL: not made yet */
+	struct series_room room;    /* of the core */
+};
+void deviation_make(struct trajectory *t);
+void deviation_free(struct trajectory *t);
+void deviation_renew(struct trajectory *t);     /* all that x is wide is a box from here on */
+void deviation_over_piece(struct trajectory *t); /* next by e^{A piece}, which stream_pieces has made; next_x */
+/* The polynomial of the core and, in piece.room, of x, as by stream_expand; returns its degree */
+int  deviation_expand(struct trajectory *t, mpq_srcptr tau);
+/* The core, `next` and next_x by e^{A s tau}, with the polynomials of tau */
+void deviation_over_part(struct trajectory *t, int degree, mpq_srcptr tau, mpfr_srcptr s);
+void deviation_take(struct trajectory *t);      /* x, core and deviation are those behind it */
+void deviation_loads(struct trajectory *t);     /* loads are known there */
+/* From the equations `before` to those here where the guard is met, at most `off` from now: x, core and deviation;
+ * false: it is too wide for that, and nothing is changed */
+bool deviation_cross(struct trajectory *t, const struct guard *guard, const struct stream *before, mpfr_srcptr off);
 
 /* ---- passes.c: the first event of a piece, and what is behind it ---- */
 
