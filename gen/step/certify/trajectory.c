@@ -2,7 +2,7 @@
 /* A piecewise-linear model through its crossings, enclosed: from event to event by the closed form of each region. The
  * state is kept at rational times, as the region that it is in would have it there; what an event's time is not known
  * by becomes a width of the state. Between events it goes by powers of e^{A d} from where the grid of pieces d was met
- * first, so that widths grow by events and not by steps. */
+ * first, so that rounding does not add up by steps. */
 #include "inner.h"
 #include "model/regions/regions.h"
 #include "model/tunable/tuning.h"
