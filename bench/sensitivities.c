@@ -67,7 +67,7 @@ static int slopes(realtype t, N_Vector y, N_Vector f, void *context)
 
 /* s' = J s + f_p, all columns from one Jacobian */
 static int sensitivities(int columns, realtype t, N_Vector y, N_Vector f, N_Vector *s, N_Vector *g, void *context,
-                         N_Vector more, N_Vector most)
+						 N_Vector more, N_Vector most)
 {
 	double z[2 * ALL], Jq[ALL * ALL], Jv[ALL * ALL];
 	(void)f, (void)context, (void)more, (void)most;

@@ -230,7 +230,7 @@ static void linear_operator(const struct system *s, int which, real *A)
 }
 
 int amplification_by_hand(int size, const real *A, const real *exact, const char *scheme, double h,
-                          double complex *eigenvalue)
+						  double complex *eigenvalue)
 {
 	const bool flow = strcmp(scheme, "flow") == 0, pl = strcmp(scheme, "pl") == 0;
 	const struct system system = {.name = scheme, .states = size, .equations = linear_equations,

@@ -37,7 +37,7 @@ int amplification(struct free_motion *m, const struct method *method, double h, 
 /* The same of the schemes by hand on y' = A y, of which the operator `exact` is exact and the rest the remainder;
  * scheme "flow": e^{exact h}; pl: etd1, exact but for what couples coordinates */
 int amplification_by_hand(int size, const real *A, const real *exact, const char *scheme, double h,
-                          double complex *eigenvalue);
+						  double complex *eigenvalue);
 /* And of generated code, whose step is linear or nearly so about 0: from unit states times `size` */
 int amplification_of_model(const pl_model *model, double size, double complex *eigenvalue);
 double largest(int count, const double complex *eigenvalue);            /* modulus; NAN where there is none */

@@ -235,7 +235,8 @@ struct samples { double min, median, max; int count; };            /* nanosecond
 void sample_runs(int runs, struct run *const *run, double seconds, struct samples *result);
 /* The same, but run k is left out (no samples) where is_dear says so, which has a first reading of those before it */
 void sample_ladders(int runs, struct run *const *run, double seconds,
-                    bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of, struct samples *result);
+					bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of,
+					struct samples *result);
 double sample_pass(struct run *run);        /* ns per unit of one such pass by itself: what samples are held against */
 struct samples sample_summary(int count, double *ns);               /* sorts */
 double now_ns(void);

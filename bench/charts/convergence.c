@@ -35,7 +35,7 @@ struct curve {
 static const double rounding = 1e-12;
 
 static void follow(struct curve *curve, const struct problem *p, const struct truth *truth, const char *variants,
-                   const int *intervals)
+				   const int *intervals)
 {
 	const struct method *method = curve->method;
 	const bool ours = method->family == OURS;
@@ -102,7 +102,7 @@ static void write_orders(FILE *csv, const struct curve *curve, const char *syste
 }
 
 static void converge(const char *system, double frequency, const char *variants, const int *intervals, FILE *csv,
-                     FILE *orders)
+					 FILE *orders)
 {
 	struct problem *p = problem_load(text("%s/convergence_%s_exact_%d.so", variants, system, intervals[0]), system,
 	                                 whole / COMMON, COMMON, true, frequency);

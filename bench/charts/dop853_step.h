@@ -23,7 +23,7 @@
 
 /* The interpolant of the step just taken, from y to `next`: three more stages. Their nest of factors: II.6 (6.20) */
 static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const double *y, const double *next,
-                                   double (*k)[2 * EXTENT])
+								   double (*k)[2 * EXTENT])
 {
 	double x[2 * EXTENT];
 	STAGES(14, 16)
@@ -44,7 +44,7 @@ static inline void INSTANCE(dense)(struct dop853 *d, double t, double h, const d
 
 /* A step from y, whose slope is k[1], to `next`; returns its weighted error */
 INLINE double INSTANCE(try)(struct dop853 *d, double t, double h, const double *y, double *next,
-                            double (*k)[2 * EXTENT])
+							double (*k)[2 * EXTENT])
 {
 	const double tolerance = d->tolerance, *scale = d->adaptive.scale;
 	double x[2 * EXTENT];

@@ -5,7 +5,7 @@
 
 /* From y, with the slope k[0] there, to x of order 5, whose slope is k[6] */
 static inline void dormand_stages(DORMAND_TYPE *of, int size, double t, double h, const double *restrict y,
-                                  double *const k[7], double *restrict x)
+								  double *const k[7], double *restrict x)
 {
 	double *restrict k1 = k[0], *restrict k2 = k[1], *restrict k3 = k[2], *restrict k4 = k[3], *restrict k5 = k[4],
 		*restrict k6 = k[5];

@@ -41,7 +41,7 @@ INLINE void factor_##KIND(const int n, number *a, int *row) \
 	} \
 } \
 INLINE void solve_##KIND(const int n, const number *restrict a, const int *row, const number *restrict right, \
-                         number *restrict x) \
+						 number *restrict x) \
 { \
 	_Pragma("GCC unroll 4") for (int i = 0; i < n; i++) { \
 		number sum = right[n == 1 ? 0 : row[i]]; \

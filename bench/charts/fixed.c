@@ -87,7 +87,7 @@ struct equation {               /* of one step, in its unknowns z */
 typedef void residual_function(struct fixed *f, const struct equation *e, const double *z, double *r);
 
 INLINE void difference(struct fixed *f, struct factors *s, const struct equation *e, double *z, const double *r,
-                       residual_function *residual)
+					   residual_function *residual)
 {
 	const int m = s->size;
 	double *moved = f->work[7];

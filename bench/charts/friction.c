@@ -189,9 +189,9 @@ static const struct solver phases = {
 	.looks_ahead = true, .discard = cvode_discard,
 };
 static const struct kind adams = {.method = BY_TOLERANCE("CVODE Adams, roots", 0, ""), .solver = &phases,
-                                  .formula = CV_ADAMS};
+								  .formula = CV_ADAMS};
 static const struct kind bdf = {.method = BY_TOLERANCE("CVODE BDF, roots", 0, ""), .solver = &phases,
-                                .formula = CV_BDF};
+								.formula = CV_BDF};
 static const struct method exact = {.name = "exact", .family = OURS};
 
 /* ---- time stepping ---- */
@@ -266,7 +266,7 @@ static struct run *stepping_open(const struct method *method, const struct probl
 }
 
 static const struct method moreau_jean = {.name = "Moreau and Jean", .family = FIXED, .order = 1,
-                                          .open = stepping_open};
+										  .open = stepping_open};
 
 /* Smoothing's step: m eps/F, the time of what is smoothed, or an output's; its tolerance: a hundredth of eps */
 static void way_open(struct way *way, const char *variants, const struct truth_of_friction *truth)

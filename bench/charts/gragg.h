@@ -12,7 +12,7 @@ enum { COLUMNS = 9 };               /* of the extrapolation: order 18 */
 /* Gragg 1965: the modified midpoint rule with `parts` substeps; its error has even powers only. The last slope is asked
  * for, too: without it no column would see a kink in the last eighteenth of a step. */
 static void midpoint(GRAGG_TYPE *x, int size, long double t, long double H, int parts, const long double *y,
-                     const long double *slope, long double *result)
+					 const long double *slope, long double *result)
 {
 	long double before[size], now[size], f[size], h = H / parts;
 	for (int i = 0; i < size; i++) {
@@ -34,7 +34,7 @@ static void midpoint(GRAGG_TYPE *x, int size, long double t, long double H, int 
 
 /* y(t + H) into `result`, and what one column fewer gives */
 static void extrapolate(GRAGG_TYPE *x, int size, long double t, long double H, const long double *y,
-                        long double *result, long double *fewer)
+						long double *result, long double *fewer)
 {
 	long double table[COLUMNS][size], slope[size];
 	GRAGG_SLOPES(x, t, y, slope);

@@ -192,7 +192,7 @@ static struct cell follow(struct run *run, const struct truth *t)
 }
 
 static struct cell try_method(const struct method *m, const struct problem *p, const struct truth *t, double setting,
-                              const char *file, long most_evaluations)
+							  const char *file, long most_evaluations)
 {
 	struct problem asked = *p;
 	if (m->linear_only && !p->linear)
@@ -214,7 +214,7 @@ static struct cell try_method(const struct method *m, const struct problem *p, c
 /* ---- the table ---- */
 
 static void print_cell(FILE *out, const struct hard_case *c, const struct method *m, double setting, struct cell cell,
-                       const char *settings)
+					   const char *settings)
 {
 	fprintf(out, "\"%s\",\"%s\",%s,%s,%.8g,", c->name, m->name, family_names[m->family], m->tolerance ? "tolerance"
 		: "step", setting);
@@ -226,7 +226,7 @@ static void print_cell(FILE *out, const struct hard_case *c, const struct method
 }
 
 static void try_peer(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t,
-                     const struct method *m)
+					 const struct method *m)
 {
 	for (int i = 0; c->steps[i] && !(m->tolerance && i > 0); i++) {
 		const double setting = m->tolerance ? tolerance : value_of(c->steps[i]);
@@ -245,7 +245,7 @@ static void try_peers(FILE *out, const struct hard_case *c, const struct problem
 }
 
 static void try_ours(FILE *out, const struct hard_case *c, const struct problem *p, const struct truth *t, int i, int k,
-                     const char *variants)
+					 const char *variants)
 {
 	const struct method m = { .name = ours[k].name, .family = OURS };
 	const double step = value_of(c->steps[i]);

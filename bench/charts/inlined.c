@@ -95,7 +95,7 @@ INLINE void rk4_long(const int size, slopes_function *slopes, double t, double h
 
 /* Kicks b h and drifts a h in turns, symmetric: a kick first and last, so that its force is kept */
 INLINE void turns(const int size, slopes_function *slopes, double t, double h, double *state, const int drifts,
-                  const double *drift, const double *kick)
+				  const double *drift, const double *kick)
 {
 	const int n = size / 2;
 	double *q = state, *v = state + n, *a = state + size, f[MOST_SIZE];
@@ -150,7 +150,7 @@ INLINE void join_at(const int n, const struct inlined *r, double s, double *y)
 }
 
 INLINE void march(const int n, slopes_function *slopes, step_function *step, double t0, double unit, int units,
-                  int steps, double h, double *state, double *rows)
+				  int steps, double h, double *state, double *rows)
 {
 	double s[3 * MOST_COORDINATES];
 	_Pragma("GCC unroll 8") for (int m = 0; m < 3 * n; m++)
@@ -169,7 +169,7 @@ INLINE void march(const int n, slopes_function *slopes, step_function *step, dou
 /* A step of `span` units; rows inside it from its polynomial, at its end the state. `fraction` of the next unit if
  * units is 0 */
 INLINE void stride(const int n, slopes_function *slopes, step_function *step, struct inlined *r, int units,
-                   double fraction, double *rows)
+				   double fraction, double *rows)
 {
 	const double over = 1.0 / r->span;
 	for (int u = 0; u < units || (units == 0 && u == 0); u++) {

@@ -137,7 +137,7 @@ static void two_masses(const struct method *method, double x[2])
 
 enum onset { SMOOTH, AT_ONCE, DISPLACED };
 static const char *const onsets[] = {"from rest, load sin 2t", "from rest, load 1 from t = 0 on",
-                                     "from x = 1, no load"};
+									 "from x = 1, no load"};
 
 static void loaded_slope(const void *of, double t, const double y[], double dydt[])
 {
@@ -286,7 +286,7 @@ static void chart_quality(FILE *csv, int points)
 
 /* What the literature has for small steps: the first power of w h with its factor */
 static void check_small(struct checks *c, const char *name, double wh, double elongation, double damping,
-                        double tolerance)
+						double tolerance)
 {
 	const struct subject s = subject_named(name, 0);
 	const struct quality q = asked_of_subject(&s, wh);

@@ -52,7 +52,7 @@ struct effort { int per_decade; double digits; double shorter; };
 static struct effort effort;
 
 static void entry(FILE *csv, const char *model, const char *method, const char *step, const char *rate,
-                  const char *criterion)
+				  const char *criterion)
 {
 	fprintf(csv, "%s,%s,%s,%s,\"%s\"\n", model, method, step, rate, criterion);
 }
@@ -262,7 +262,7 @@ static void beam_operator(const struct system *s, int which, real *A)
 }
 
 static const struct system beam_by_hand = {.name = "beam", .states = CANTILEVER_STATES, .equations = beam_equations,
-                                           .linear = beam_operator};
+										   .linear = beam_operator};
 
 /* ---- nonlinear models ---- */
 

@@ -73,7 +73,7 @@ static void modes_of(int n, const double *M, const double *K, const double *load
 
 /* A chain: masses, springs before each mass (0: none) with factor `stiffer`; load on masses, output by coordinates */
 static void chain(int n, const double *mass, const double *spring, double stiffer, const double *load,
-                  const double *out, struct modal *m)
+				  const double *out, struct modal *m)
 {
 	double M[n * n], K[n * n];
 	memset(M, 0, sizeof M);
@@ -222,7 +222,7 @@ static struct modal truncated(const struct modal *m, int kept, bool with_static)
 struct list { FILE *file; const char *folder; int count; };
 
 static FILE *spec_open(struct list *list, const struct scene *s, const char *model, const char *options, int kept,
-                       int states)
+					   int states)
 {
 	const char *name = text("less_%d", ++list->count);
 	fprintf(list->file, "%s\t%s\t%s\t%d\t%d\t%s --step %s\n", name, s->name, model, kept, states, options, s->step);
@@ -232,7 +232,7 @@ static FILE *spec_open(struct list *list, const struct scene *s, const char *mod
 }
 
 static void put_modal(struct list *list, const struct scene *s, const char *model, const char *options,
-                      const struct modal *m, int kept)
+					  const struct modal *m, int kept)
 {
 	FILE *f = spec_open(list, s, model, options, kept, 2 * m->modes);
 	fputs("coord ", f);

@@ -215,7 +215,7 @@ bool modes_find(struct propagator *r)
 
 /* x <- what it is a step on, under loads as they are now */
 static inline void move_modes(const struct propagator *r, const double *restrict table, const double *x,
-                              const double *restrict load, double *after)
+							  const double *restrict load, double *after)
 {
 	const struct modes *m = r->modes;
 	const int loads = r->size - r->own;

@@ -48,9 +48,9 @@ static void describe(struct reference *b)
 }
 
 static const struct method etdrk4 = { .name = "etdrk4", .family = OURS, .order = 4,
-                                      .settings = "plgen --scheme etdrk4" };
+									  .settings = "plgen --scheme etdrk4" };
 static const struct method etdrk2 = { .name = "etdrk2", .family = OURS, .order = 2,
-                                      .settings = "plgen --scheme etdrk2" };
+									  .settings = "plgen --scheme etdrk2" };
 static const struct method etd1 = { .name = "etd1", .family = OURS, .order = 1, .settings = "plgen --scheme etd1" };
 static const struct method *const schemes[] = { &etd1, &etdrk2, &etdrk4 };
 
@@ -72,7 +72,7 @@ static void solve(const struct papers *papers, const char *variant, struct refer
 }
 
 static void compare_reference(FILE *table, const struct reference *b, const char *least, const char *when,
-                              const char *late)
+							  const char *late)
 {
 	const char *roads = text("etdrk4 at h = 0.0001 s; RK4 at 0.0001 s on the equations differs by at most %.2g m",
 	                         b->agreement);

@@ -20,12 +20,12 @@ static const struct system {
 	double frequency;                       /* of the load */
 	const char *time_ratio[2];              /* CPU time of PL over RK4 that it reports, at h = 0.01 and 0.001 */
 } systems[] = { { "scs", 0, { "0.53", "0.51" } }, { "sdcs", 0, { "0.72", "0.57" } },
-                { "sdcsf", 5, { "0.81", "0.62" } } };
+				{ "sdcsf", 5, { "0.81", "0.62" } } };
 
 static const struct method pl = { .name = "pl", .family = OURS, .linear_only = true, .order = 1,
-                                  .settings = "plgen --scheme pl" };
+								  .settings = "plgen --scheme pl" };
 static const struct method exact = { .name = "exact", .family = OURS, .linear_only = true,
-                                     .settings = "plgen --scheme exact" };
+									 .settings = "plgen --scheme exact" };
 
 /* ---- ode45 ----
  *

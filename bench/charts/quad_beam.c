@@ -183,7 +183,7 @@ static quad largest_of(const quad *x)
 
 /* y(t + h) into y. Terms until two of them no longer matter to the largest values so far. */
 static void step(struct beam_series *x, const struct quad_beam *beam, quad Om, quad t, quad h, quad *y,
-                 const quad *largest)
+				 const quad *largest)
 {
 	struct speed s;
 	int k = 0;

@@ -24,7 +24,7 @@ INLINE void INSTANCE(factor)(struct radau *d, double h, const int s)
 
 /* What the accelerations K lack at the stages; the last stage's state into `end` */
 INLINE void INSTANCE(residual)(struct radau *d, double h, const double *y, double K[][EXTENT], double r[][EXTENT],
-                               double *end, const int s)
+							   double *end, const int s)
 {
 	const struct radau_table *table = d->table;
 	double x[2 * EXTENT], f[2 * EXTENT];
@@ -96,7 +96,7 @@ INLINE void INSTANCE(predict)(struct radau *d, double h, double K[][EXTENT], con
 
 /* Filtered by the real eigenvalue's system: IV.8 (8.19), (8.20); `slope` is that at the start */
 INLINE double INSTANCE(error)(struct radau *d, double h, const double *y, const double *end, double K[][EXTENT],
-                              const double *slope, double *error, const int s)
+							  const double *slope, double *error, const int s)
 {
 	const struct radau_table *table = d->table;
 	const double g = h * table->real;

@@ -66,7 +66,7 @@ static double complex slope_at(int k, int own, int poles, const double *B, const
 /* Columns from `from` on, of the leading `poles`, by that many simple poles s_k: A(s_k) is the product of G - s_j over
  * the others */
 static void add_residues(int size, int own, int from, int poles, const double *G, const double *B,
-                         const double complex *s, double h, double *result)
+						 const double complex *s, double h, double *result)
 {
 	double complex A[MOST][MOST], next[MOST][MOST];
 	for (int k = 0; k < poles; k++) {

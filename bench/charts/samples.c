@@ -112,7 +112,8 @@ static double *rows_of(int runs, struct run *const *run)
 }
 
 void sample_ladders(int runs, struct run *const *run, double seconds,
-                    bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of, struct samples *result)
+					bool (*is_dear)(int k, const struct samples *so_far, void *of), void *of,
+					struct samples *result)
 {
 	struct turn *turn = room_for((size_t)runs, sizeof *turn);
 	double *rows = rows_of(runs, run), share = 1e9 * seconds / (runs > 0 ? runs : 1);

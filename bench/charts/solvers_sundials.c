@@ -55,7 +55,7 @@ static void sundials_discard(struct adaptive *a)
 
 /* f = (v, a): the upper half of its Jacobian is known */
 static int sundials_jacobian(realtype t, N_Vector y, N_Vector dydt, SUNMatrix J, void *of, N_Vector w1, N_Vector w2,
-                             N_Vector w3)
+							 N_Vector w3)
 {
 	const struct adaptive *a = of;
 	const struct problem *p = a->run.problem;

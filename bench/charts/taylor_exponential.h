@@ -6,7 +6,7 @@
 
 /* E <- I + X Y/divisor, or X Y where that is 0; product: room for it */
 static void exponential_product(int n, const EXPONENTIAL_REAL *X, int divisor, EXPONENTIAL_REAL *E,
-                                const EXPONENTIAL_REAL *Y, EXPONENTIAL_REAL *product)
+								const EXPONENTIAL_REAL *Y, EXPONENTIAL_REAL *product)
 {
 	for (int i = 0; i < n; i++)
 		for (int j = 0; j < n; j++) {

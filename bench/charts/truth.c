@@ -349,7 +349,7 @@ static double elliptic_difference(const struct problem *p, const struct truth *t
 }
 
 static double difference_at(const struct problem *p, const struct truth *t, const struct method *method,
-                            double tolerance)
+							double tolerance)
 {
 	struct run *run = method->open(method, p, tolerance);
 	double row[MOST], most = 0;

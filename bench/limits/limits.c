@@ -46,7 +46,7 @@ typedef double lanes __attribute__((vector_size(8 * LANES)));
 #endif
 
 enum { TIMES = 400, SAMPLES = 400, ROWS = 256, FAR_BYTES = 1 << 25, FAR_ROWS = 1 << 14,
-       FAR_SAMPLES = 16 };
+	   FAR_SAMPLES = 16 };
 
 /* Long samples in time of the processor: others take it away in between */
 static double nanoseconds(int samples)

@@ -16,7 +16,7 @@ bool eliminate(size_t rows, size_t width, mpq_t *W); /* its left square part mad
  * columns of a segment; u and u' of every input; `forces` columns, each a force on its row. A coordinate of first order
  * is solved for its derivative, whose factor stands in the system's C and is no part of an operator. NULL: singular */
 mpq_t *highest_rows(const struct linear *system, const mpq_t *K, const mpq_t *C, int segment, int forces,
-                    const int *row, size_t *width);
+					const int *row, size_t *width);
 
 /* z = t^k e^{at} cos(wt+p) and sin, or t^k e^{at} alone, into A (size a row): z' = a z + k (z of k - 1) -+ w (its
  * partner) */

@@ -23,8 +23,8 @@
 
 /* One case: what is compared now, and what went wrong so far */
 extern struct tried {
-    const char *spec, *scheme, *time;   /* text of the spec; time: the step, or t of a solution */
-    int compared, failed, beyond;       /* beyond: times at which the judge gave up */
+	const char *spec, *scheme, *time;   /* text of the spec; time: the step, or t of a solution */
+	int compared, failed, beyond;       /* beyond: times at which the judge gave up */
 } trial;
 
 void complain(const char *what, const char *message);
@@ -35,18 +35,18 @@ void compare(const char *what, double found, double expected);
 /* y = states, [held states,] loads, inputs (with their slopes); y' = A y in one segment of time, and e^{A h} X has the
  * factors of one step in its first rows: of the states, of the load columns, of the input columns */
 struct augmented {
-    size_t states, loads, inputs;       /* columns of X of each kind */
-    size_t first_load, size, columns;   /* of A and of X */
-    mpq_t *A, *X;
+	size_t states, loads, inputs;       /* columns of X of each kind */
+	size_t first_load, size, columns;   /* of A and of X */
+	mpq_t *A, *X;
 };
 
 enum { LEVELS = 6 };                    /* 512, 1024, ... 16384 bits */
 
 struct enclosures {
-    const struct augmented *a;
-    mpq_srcptr h;
-    evaluator_enclosure *level[LEVELS];
-    bool given_up[LEVELS];
+	const struct augmented *a;
+	mpq_srcptr h;
+	evaluator_enclosure *level[LEVELS];
+	bool given_up[LEVELS];
 };
 
 struct augmented augment(const struct linear *system, int segment, bool pl, mpq_srcptr h);

@@ -11,13 +11,13 @@ static uint64_t random_state;
 
 static inline unsigned below(unsigned n)
 {
-    random_state = random_state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (unsigned)(random_state >> 33) % n;
+	random_state = random_state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+	return (unsigned)(random_state >> 33) % n;
 }
 
 static inline bool chance(unsigned percent)
 {
-    return below(100) < percent;
+	return below(100) < percent;
 }
 
 #endif

@@ -30,183 +30,185 @@ static real factors[M_BATCH_FACTORS * MOST];
 
 static double draw(void)                /* -1 .. 1 */
 {
-    static uint32_t state = 7;
-    state = state * 1664525u + 1013904223u;
-    return (double)state / 2147483648.0 - 1.0;
+	static uint32_t state = 7;
+	state = state * 1664525u + 1013904223u;
+	return (double)state / 2147483648.0 - 1.0;
 }
 
 static void start(m_instances *b)
 {
-    size_t j;
-    m_batch_init(b);
-    for (j = 0; j < b->count; j++) {
-        real now[M_STATES], first[M_OUTPUTS];
-        int i;
-        m_init(&alone[j]);
-        for (i = 0; i < M_STATES; i++)
-            now[i] = (real)draw();
-        if (j > 0) {                    /* instance 0 stays with the spec's initial values */
-            m_set(&alone[j], 0, now);
-            m_batch_set(b, j, now);
-        }
+	size_t j;
+	m_batch_init(b);
+	for (j = 0; j < b->count; j++) {
+		real now[M_STATES], first[M_OUTPUTS];
+		int i;
+		m_init(&alone[j]);
+		for (i = 0; i < M_STATES; i++)
+			now[i] = (real)draw();
+		if (j > 0) {                    /* instance 0 stays with the spec's initial values */
+			m_set(&alone[j], 0, now);
+			m_batch_set(b, j, now);
+		}
 #ifdef TUNED
-        m_coeffs c = m_nominal;
-        real params[M_PARAMS];
-        for (i = 0; i < M_PARAMS; i++)
-            params[i] = m_nominal.params[i] * (real)(1.0 + 0.2 * draw());
-        if (m_retune(&c, params, M_H) == 0) {
-            m_use(&alone[j], &c);
-            if (m_batch_use(b, j, &c) != 0)
-                printf("# instance %zu does not take its coefficients\n", j);
-        }
-        m_get(&alone[j], now);
-        m_batch_set(b, j, now);         /* peaks of outputs with these params */
+		m_coeffs c = m_nominal;
+		real params[M_PARAMS];
+		for (i = 0; i < M_PARAMS; i++)
+			params[i] = m_nominal.params[i] * (real)(1.0 + 0.2 * draw());
+		if (m_retune(&c, params, M_H) == 0) {
+			m_use(&alone[j], &c);
+			if (m_batch_use(b, j, &c) != 0)
+				printf("# instance %zu does not take its coefficients\n", j);
+		}
+		m_get(&alone[j], now);
+		m_batch_set(b, j, now);         /* peaks of outputs with these params */
 #endif
-        m_out(&alone[j], first);
-        for (i = 0; i < M_OUTPUTS; i++)
-            greatest[j][i] = (real)fabs((double)first[i]);
-        for (i = 0; i < M_STATES; i++)
-            widest[j][i] = 0;
-    }
+		m_out(&alone[j], first);
+		for (i = 0; i < M_OUTPUTS; i++)
+			greatest[j][i] = (real)fabs((double)first[i]);
+		for (i = 0; i < M_STATES; i++)
+			widest[j][i] = 0;
+	}
 }
 
 /* The largest deviation, in units in the last place of the largest value of that state or output */
 static double worst;
 static void compare(const char *what, size_t j, double batch, double single, double largest)
 {
-    double off = fabs(batch - single) / (UNIT * (largest > 0 ? largest : 1));
-    if (!(off <= worst)) {
-        worst = off;
-        if (!(off <= 2.0 * STEPS))
-            printf("# %s of instance %zu: %.17g in the batch, %.17g alone\n", what, j, batch, single);
-    }
+	double off = fabs(batch - single) / (UNIT * (largest > 0 ? largest : 1));
+	if (!(off <= worst)) {
+		worst = off;
+		if (!(off <= 2.0 * STEPS))
+			printf("# %s of instance %zu: %.17g in the batch, %.17g alone\n", what, j, batch, single);
+	}
 }
 
 static void widen(size_t j)
 {
-    real now[M_STATES];
-    int i;
-    m_get(&alone[j], now);
-    for (i = 0; i < M_STATES; i++)
-        widest[j][i] = fmax(widest[j][i], fabs((double)now[i]));
+	real now[M_STATES];
+	int i;
+	m_get(&alone[j], now);
+	for (i = 0; i < M_STATES; i++)
+		widest[j][i] = fmax(widest[j][i], fabs((double)now[i]));
 }
 
 static void step_alone(size_t count, int outputs)
 {
-    size_t j;
-    int k, i;
-    for (j = 0; j < count; j++)
-        for (k = 0; k < STEPS; k++) {
-            real now[M_OUTPUTS];
+	size_t j;
+	int k, i;
+	for (j = 0; j < count; j++)
+		for (k = 0; k < STEPS; k++) {
+			real now[M_OUTPUTS];
 #if HAS_INPUTS
-            m_step(&alone[j], u + k * M_INPUTS);
+			m_step(&alone[j], u + k * M_INPUTS);
 #else
-            m_step(&alone[j]);
+			m_step(&alone[j]);
 #endif
-            m_out(&alone[j], now);
-            for (i = 0; i < M_OUTPUTS; i++) {
-                size_t row = (size_t)(k * M_OUTPUTS + i) * count;
-                greatest[j][i] = (real)fmax((double)greatest[j][i], fabs((double)now[i]));
-                if (outputs)
-                    compare("an output", j, (double)out[row + j], (double)now[i], (double)greatest[j][i]);
-            }
-            widen(j);
-        }
+			m_out(&alone[j], now);
+			for (i = 0; i < M_OUTPUTS; i++) {
+				size_t row = (size_t)(k * M_OUTPUTS + i) * count;
+				greatest[j][i] = (real)fmax((double)greatest[j][i], fabs((double)now[i]));
+				if (outputs)
+					compare("an output", j, (double)out[row + j], (double)now[i],
+							(double)greatest[j][i]);
+			}
+			widen(j);
+		}
 }
 
 static void step_together(m_instances *b, int outputs)
 {
-    static const size_t part[] = {1, 0, 63, STEPS - 64};
-    size_t i, at = 0;
-    for (i = 0; i < sizeof part / sizeof *part; i++) {
-        real *rows = outputs ? out + at * M_OUTPUTS * b->count : NULL;
+	static const size_t part[] = {1, 0, 63, STEPS - 64};
+	size_t i, at = 0;
+	for (i = 0; i < sizeof part / sizeof *part; i++) {
+		real *rows = outputs ? out + at * M_OUTPUTS * b->count : NULL;
 #if HAS_INPUTS
-        m_batch(b, part[i], u + at * M_INPUTS, rows);
+		m_batch(b, part[i], u + at * M_INPUTS, rows);
 #else
-        m_batch(b, part[i], rows);
+		m_batch(b, part[i], rows);
 #endif
-        at += part[i];
-    }
+		at += part[i];
+	}
 }
 
 static void judge(const m_instances *b)
 {
-    size_t j;
-    int i;
-    for (j = 0; j < b->count; j++) {
-        real together[M_STATES], single[M_STATES];
-        m_batch_get(b, j, together);
-        m_get(&alone[j], single);
-        for (i = 0; i < M_STATES; i++)
-            compare("a state", j, (double)together[i], (double)single[i], widest[j][i]);
-        for (i = 0; i < M_OUTPUTS; i++)
-            compare("a peak", j, (double)peak[(size_t)i * b->count + j], (double)greatest[j][i],
-                    (double)greatest[j][i]);
-    }
-    if (m_time(&b->shared) != m_time(&alone[0]))
-        compare("the time", 0, (double)m_time(&b->shared), (double)m_time(&alone[0]), 1e-300);
+	size_t j;
+	int i;
+	for (j = 0; j < b->count; j++) {
+		real together[M_STATES], single[M_STATES];
+		m_batch_get(b, j, together);
+		m_get(&alone[j], single);
+		for (i = 0; i < M_STATES; i++)
+			compare("a state", j, (double)together[i], (double)single[i], widest[j][i]);
+		for (i = 0; i < M_OUTPUTS; i++)
+			compare("a peak", j, (double)peak[(size_t)i * b->count + j], (double)greatest[j][i],
+					(double)greatest[j][i]);
+	}
+	if (m_time(&b->shared) != m_time(&alone[0]))
+		compare("the time", 0, (double)m_time(&b->shared), (double)m_time(&alone[0]), 1e-300);
 }
 
 /* What is not a number in one instance, or infinite in another, is told of these two, and no other has it. */
 static int told(size_t count, int outputs)
 {
-    m_instances b = {0};
-    size_t j;
-    int wrong = 0;
-    b.count = count;
-    b.y = y;
-    b.peak = peak;
+	m_instances b = {0};
+	size_t j;
+	int wrong = 0;
+	b.count = count;
+	b.y = y;
+	b.peak = peak;
 #ifdef TUNED
-    b.factors = factors;
+	b.factors = factors;
 #endif
-    start(&b);
-    for (j = 1; j < count; j += 4) {
-        real now[M_STATES];
-        m_batch_get(&b, j, now);
-        now[j % M_STATES] = j % 8 == 1 ? (real)NAN : (real)HUGE_VAL;
-        m_batch_set(&b, j, now);
-        m_set(&alone[j], 0, now);
-        wrong += m_batch_status(&b, j) != m_status(&alone[j]);
-    }
-    step_together(&b, outputs);
-    step_alone(count, 0);
-    for (j = 0; j < count; j++) {
-        const int status = m_batch_status(&b, j), expected = m_status(&alone[j]);
-        real together[M_STATES], single[M_STATES];
-        int i;
-        wrong += status != expected || (status & PL_NOT_FINITE) != (j % 4 == 1 ? PL_NOT_FINITE : 0);
-        if (status != expected)
-            printf("# status of instance %zu of %zu: %d, expected %d\n", j, count, status, expected);
-        m_batch_get(&b, j, together);
-        m_get(&alone[j], single);
-        for (i = 0; i < M_STATES && expected == 0; i++)
-            compare("a state beside what is not finite", j, (double)together[i], (double)single[i], widest[j][i]);
-    }
-    return wrong;
+	start(&b);
+	for (j = 1; j < count; j += 4) {
+		real now[M_STATES];
+		m_batch_get(&b, j, now);
+		now[j % M_STATES] = j % 8 == 1 ? (real)NAN : (real)HUGE_VAL;
+		m_batch_set(&b, j, now);
+		m_set(&alone[j], 0, now);
+		wrong += m_batch_status(&b, j) != m_status(&alone[j]);
+	}
+	step_together(&b, outputs);
+	step_alone(count, 0);
+	for (j = 0; j < count; j++) {
+		const int status = m_batch_status(&b, j), expected = m_status(&alone[j]);
+		real together[M_STATES], single[M_STATES];
+		int i;
+		wrong += status != expected || (status & PL_NOT_FINITE) != (j % 4 == 1 ? PL_NOT_FINITE : 0);
+		if (status != expected)
+			printf("# status of instance %zu of %zu: %d, expected %d\n", j, count, status, expected);
+		m_batch_get(&b, j, together);
+		m_get(&alone[j], single);
+		for (i = 0; i < M_STATES && expected == 0; i++)
+			compare("a state beside what is not finite", j, (double)together[i], (double)single[i],
+					widest[j][i]);
+	}
+	return wrong;
 }
 
 int main(int argc, char **argv)
 {
-    static const size_t counts[] = {1, 2, 3, 7, 16, 33, MOST};
-    double bound = argc > 1 ? atof(argv[1]) : 0;
-    size_t i;
-    int wrong;
-    for (i = 0; i < sizeof u / sizeof *u; i++)
-        u[i] = (real)draw();
-    for (i = 0; i < sizeof counts / sizeof *counts; i++) {
-        m_instances b = {0};
-        b.count = counts[i];
-        b.y = y;
-        b.peak = peak;
+	static const size_t counts[] = {1, 2, 3, 7, 16, 33, MOST};
+	double bound = argc > 1 ? atof(argv[1]) : 0;
+	size_t i;
+	int wrong;
+	for (i = 0; i < sizeof u / sizeof *u; i++)
+		u[i] = (real)draw();
+	for (i = 0; i < sizeof counts / sizeof *counts; i++) {
+		m_instances b = {0};
+		b.count = counts[i];
+		b.y = y;
+		b.peak = peak;
 #ifdef TUNED
-        b.factors = factors;
+		b.factors = factors;
 #endif
-        start(&b);
-        step_together(&b, i % 2 == 0);
-        step_alone(b.count, i % 2 == 0);
-        judge(&b);
-    }
-    wrong = told(7, 1) + told(33, 0);
-    printf("# %.3g units in the last place, at most %g; %d statuses wrong\n", worst, bound, wrong);
-    return !(worst <= bound && wrong == 0);
+		start(&b);
+		step_together(&b, i % 2 == 0);
+		step_alone(b.count, i % 2 == 0);
+		judge(&b);
+	}
+	wrong = told(7, 1) + told(33, 0);
+	printf("# %.3g units in the last place, at most %g; %d statuses wrong\n", worst, bound, wrong);
+	return !(worst <= bound && wrong == 0);
 }

@@ -37,9 +37,10 @@ static void coordinates(FILE *file, gsl_matrix *m, size_t entries, bool symmetri
 	while (entries-- > 0) {
 		size_t i, j;
 		double value;
-                if (sscanf(line(file, text), "%zu %zu %lf", &i, &j, &value) != 3 || i < 1 || j < 1 || i > m->size1 ||
-                    j > m->size2)
-                    bail_out("not an entry");
+				if (sscanf(line(file, text), "%zu %zu %lf", &i, &j, &value) != 3 || i < 1 || j < 1 ||
+						i > m->size1 ||
+					j > m->size2)
+					bail_out("not an entry");
 		gsl_matrix_set(m, i - 1, j - 1, value);
 		if (symmetric)
 			gsl_matrix_set(m, j - 1, i - 1, value);

@@ -25,8 +25,8 @@ static double error_at_ends(struct run *run, const struct truth *truth)
 static void check_order(const char *name, const char *model, double expected, double coarse, double fine)
 {
 	const double order = log2(coarse / fine);
-        ok(close_to(order, expected, order_tolerance, "errors %.6g and %.6g: order", coarse, fine),
-           "%s on %s: order %g", name, model, expected);
+		ok(close_to(order, expected, order_tolerance, "errors %.6g and %.6g: order", coarse, fine),
+		   "%s on %s: order %g", name, model, expected);
 }
 
 /* Parts of a unit where errors fall as their order says: small enough, and far above rounding */
@@ -54,7 +54,7 @@ static void check_fixed(struct problem *p, const struct method *const *methods)
 }
 
 static struct run *open_variant(const struct method *m, const struct problem *p, const char *folder, const char *name,
-    int parts)
+	int parts)
 {
 	char file[4096];
 	snprintf(file, sizeof file, "%s/%s-%s-%d.so", folder, name, m->name, parts);
@@ -64,17 +64,17 @@ static struct run *open_variant(const struct method *m, const struct problem *p,
 static void check_schemes(struct problem *p, const char *folder, const char *name)
 {
 	static const struct { struct method method; int parts;
-        } schemes[] = {
-            { { .name = "pl", .family = OURS, .order = 1 }, 256 },
-            { { .name = "etd1", .family = OURS, .order = 1 }, 256 },
-            { { .name = "etdrk2", .family = OURS, .order = 2 }, 32 },
-            { { .name = "etdrk4", .family = OURS, .order = 4 }, 8 },
-            { { .name = "nc2", .family = OURS, .order = 4 }, 8 },
-            { { .name = "nc3", .family = OURS, .order = 4 }, 8 },
-            { { .name = "dq4", .family = OURS, .order = 4 }, 8 },
-            { { .name = "bm3", .family = OURS, .order = 4 }, 8 },
-        };
-        const struct truth *truth = truth_of(p);
+		} schemes[] = {
+			{ { .name = "pl", .family = OURS, .order = 1 }, 256 },
+			{ { .name = "etd1", .family = OURS, .order = 1 }, 256 },
+			{ { .name = "etdrk2", .family = OURS, .order = 2 }, 32 },
+			{ { .name = "etdrk4", .family = OURS, .order = 4 }, 8 },
+			{ { .name = "nc2", .family = OURS, .order = 4 }, 8 },
+			{ { .name = "nc3", .family = OURS, .order = 4 }, 8 },
+			{ { .name = "dq4", .family = OURS, .order = 4 }, 8 },
+			{ { .name = "bm3", .family = OURS, .order = 4 }, 8 },
+		};
+		const struct truth *truth = truth_of(p);
 	for (size_t k = 0; k < sizeof schemes / sizeof *schemes; k++) {
 		const struct method *m = &schemes[k].method;
 		if (p->linear && strcmp(m->name, "pl") != 0)
@@ -156,10 +156,12 @@ static void check_evaluations(const struct problem *p, const char *name)
 		run->advance(run, 1, NULL);
 	const long whole = run->evaluations(run);
 	sample_runs(1, &run, 0, &samples);
-        ok(close_to((double)run->evaluations(run), (double)whole, 0, "right-hand sides of a sample of %s", name),
-           "a sample of %s on %s evaluates what the history does: %ld (its first tenth: %ld)", name, p->name, whole,
-           tenth);
-        run->close(run);
+		ok(close_to((double)run->evaluations(run), (double)whole, 0, "right-hand sides of a sample of %s",
+				name),
+		   "a sample of %s on %s evaluates what the history does: %ld (its first tenth: %ld)", name, p->name,
+		whole,
+		   tenth);
+		run->close(run);
 }
 
 static struct problem *load(const char *folder, const char *name, double unit, int units, bool linear, double w)

@@ -46,9 +46,10 @@ static bool follow(struct problem *p, double largest[2])
 static void compare(const char *name, const char *of, double scale, double largest)
 {
 	const double share = largest / scale;
-        ok(close_to(share >= 1 ? share : 1 / share, 1, factor - 1, "%s: scale of %s %.6g, CVODE's largest %.6g: ratio",
-                    name, of, scale, largest),
-           "%s: scale of %s", name, of);
+		ok(close_to(share >= 1 ? share : 1 / share, 1, factor - 1,
+				"%s: scale of %s %.6g, CVODE's largest %.6g: ratio",
+					name, of, scale, largest),
+		   "%s: scale of %s", name, of);
 }
 
 int main(void)
@@ -57,12 +58,12 @@ int main(void)
 	double unit, scale_q, scale_v;
 	int units;
 	while (fgets(line, sizeof line, stdin)) {
-            if (sscanf(line, "%63[^\t]\t%4095[^\t]\t%lf\t%d\t%lf\t%lf", name, file, &unit, &units, &scale_q,
-                       &scale_v) != 6) {
-                ok(false, "a line with scales: %s", line);
-                continue;
-            }
-                struct problem *p = problem_load(file, name, unit, units, false, 0);
+			if (sscanf(line, "%63[^\t]\t%4095[^\t]\t%lf\t%d\t%lf\t%lf", name, file, &unit, &units, &scale_q,
+					   &scale_v) != 6) {
+				ok(false, "a line with scales: %s", line);
+				continue;
+			}
+				struct problem *p = problem_load(file, name, unit, units, false, 0);
 		double largest[2] = { 0, 0 };
 		ok(follow(p, largest), "%s: CVODE comes to the end", name);
 		compare(name, "coordinates", scale_q, largest[0]);

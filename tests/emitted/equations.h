@@ -9,14 +9,14 @@
 enum load { NO_LOAD, CONSTANT, WAVE };  /* CONSTANT: one more entry, 1; WAVE: two more, cos(w t) and sin(w t) */
 
 struct equations {
-    const char *name;
-    int states, size;
-    enum load load;
-    mpq_t *A;                           /* size x size */
-    mpq_t h, w;
-    mpq_t *initial;                     /* states */
-    int outputs;
-    const char *const *state_names, *const *output_names;
+	const char *name;
+	int states, size;
+	enum load load;
+	mpq_t *A;                           /* size x size */
+	mpq_t h, w;
+	mpq_t *initial;                     /* states */
+	int outputs;
+	const char *const *state_names, *const *output_names;
 };
 
 /* NULL where nobody has written them yet. */

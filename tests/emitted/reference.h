@@ -10,11 +10,11 @@
 enum { REFERENCE_MOST_SEGMENTS = 8, REFERENCE_BITS = 300, REFERENCE_PRECISION = 400 };
 
 struct reference {
-    const char *name;
-    int states, size, segments;
-    mpq_t change[REFERENCE_MOST_SEGMENTS];      /* A[i] until change[i] */
-    mpq_t *A[REFERENCE_MOST_SEGMENTS];          /* size x size */
-    const struct reference_table *table;
+	const char *name;
+	int states, size, segments;
+	mpq_t change[REFERENCE_MOST_SEGMENTS];      /* A[i] until change[i] */
+	mpq_t *A[REFERENCE_MOST_SEGMENTS];          /* size x size */
+	const struct reference_table *table;
 };
 
 struct reference *reference_of(const char *name);       /* aborts where nobody has written them */

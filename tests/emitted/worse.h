@@ -5,7 +5,7 @@
 /* The larger of two errors. fmax would pass over one that is not a number: here it stays. */
 static inline double worse(double worst, double error)
 {
-    return error <= worst || worst != worst ? worst : error;
+	return error <= worst || worst != worst ? worst : error;
 }
 
 #endif

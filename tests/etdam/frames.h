@@ -8,10 +8,10 @@
 enum { MOST = 30, MOST_CHANGES = 3 };
 
 struct subject {
-    equations *f;
-    int states, changes;
-    real change[MOST_CHANGES];          /* when formulas change */
-    real piece;                         /* of a step of the truth */
+	equations *f;
+	int states, changes;
+	real change[MOST_CHANGES];          /* when formulas change */
+	real piece;                         /* of a step of the truth */
 };
 extern const struct subject gyro_frame, spun_frame, turned_frame, bent_frame, rotor_frame, turning_beam;
 

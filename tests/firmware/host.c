@@ -6,10 +6,10 @@
 
 void put(const char *text)
 {
-    fputs(text, stdout);
+	fputs(text, stdout);
 }
 
 void stop(int status)
 {
-    exit(status);
+	exit(status);
 }

@@ -13,30 +13,30 @@ void SysTick_Handler(void);
 
 void reset(void)
 {
-    uint32_t *to;
-    const uint32_t *from = data_image;
+	uint32_t *to;
+	const uint32_t *from = data_image;
 #if defined __ARM_FP
-    *(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: the floating-point unit is off at reset */
-    __asm__ volatile("dsb\n\tisb" ::: "memory");
+	*(volatile uint32_t *)0xE000ED88 |= 0xFu << 20; /* CPACR: the floating-point unit is off at reset */
+	__asm__ volatile("dsb\n\tisb" ::: "memory");
 #endif
-    for (to = data_start; to < data_end; to++)
-        *to = *from++;
-    for (to = bss_start; to < bss_end; to++)
-        *to = 0;
-    stop(main());
+	for (to = data_start; to < data_end; to++)
+		*to = *from++;
+	for (to = bss_start; to < bss_end; to++)
+		*to = 0;
+	stop(main());
 }
 
 void fault(void)
 {
-    stop(2);
+	stop(2);
 }
 
 __attribute__((weak)) void SysTick_Handler(void)
 {
-    fault();
+	fault();
 }
 
 /* The first words of flash: initial stack pointer, then where to go for each exception of the core. */
 __attribute__((section(".vectors"), used)) static void (*const vectors[16])(void) = {
-    (void (*)(void))stack_top, reset, fault, fault, fault, fault, fault, 0, 0, 0, 0, fault, fault, 0, fault,
-        SysTick_Handler};
+	(void (*)(void))stack_top, reset, fault, fault, fault, fault, fault, 0, 0, 0, 0, fault, fault, 0, fault,
+		SysTick_Handler};

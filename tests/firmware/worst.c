@@ -22,42 +22,42 @@ static uint32_t seed = 1;
 
 static uint32_t draw(void)
 {
-    seed = seed * 1664525u + 1013904223u;
-    return seed >> 8;
+	seed = seed * 1664525u + 1013904223u;
+	return seed >> 8;
 }
 
 /* Of either sign, within 2^+-range */
 static real any_size(int range)
 {
-    real size = 1 + (real)(draw() & 0xFFFFF) / (real)0x100000 + (real)(draw() & 0xFFFFF) / (real)1e12;
-    int e = range > 0 ? (int)(draw() % (uint32_t)(2 * range)) - range : 0;
-    for (; e > 0; e--)
-        size *= 2;
-    for (; e < 0; e++)
-        size /= 2;
-    return draw() & 1 ? size : -size;
+	real size = 1 + (real)(draw() & 0xFFFFF) / (real)0x100000 + (real)(draw() & 0xFFFFF) / (real)1e12;
+	int e = range > 0 ? (int)(draw() % (uint32_t)(2 * range)) - range : 0;
+	for (; e > 0; e--)
+		size *= 2;
+	for (; e < 0; e++)
+		size /= 2;
+	return draw() & 1 ? size : -size;
 }
 
 static void nothing(void *s, const real *u)
 {
-    (void)s, (void)u;
+	(void)s, (void)u;
 }
 
 static uint32_t ticks_of(void (*volatile f)(void *, const real *))
 {
-    const uint32_t before = SYSTICK[2];
-    f(state, inputs);
-    return (before - SYSTICK[2]) & 0xFFFFFF;
+	const uint32_t before = SYSTICK[2];
+	f(state, inputs);
+	return (before - SYSTICK[2]) & 0xFFFFFF;
 }
 
 /* The next step's instructions, in ticks */
 static uint32_t next_step(void)
 {
-    const uint32_t spent = ticks_of(MODEL.step);
-    int i;
-    for (i = 0; i < INPUTS; i++)
-        inputs[i] = any_size(3);
-    return spent - ticks_of(nothing);
+	const uint32_t spent = ticks_of(MODEL.step);
+	int i;
+	for (i = 0; i < INPUTS; i++)
+		inputs[i] = any_size(3);
+	return spent - ticks_of(nothing);
 }
 
 #ifdef SPECIAL
@@ -68,92 +68,92 @@ enum { TRIES = 1000, CLIMBS = 4, AHEAD = 2, SPECIALS = sizeof special / sizeof *
 
 static void change(real *entry)
 {
-    const uint32_t way = draw() % 8;
-    const real small = any_size(0) / (real)((uint64_t)1 << draw() % 50);
-    if (way < 3)
-        *entry += small;
-    else if (way < 6)
-        *entry *= 1 + small;
-    else if (way == 6)
-        *entry = draw() % 2 ? 0 : any_size(4);
-    else
-        *entry = special[draw() % SPECIALS] * (draw() % 2 ? 1 : 1 + small);
+	const uint32_t way = draw() % 8;
+	const real small = any_size(0) / (real)((uint64_t)1 << draw() % 50);
+	if (way < 3)
+		*entry += small;
+	else if (way < 6)
+		*entry *= 1 + small;
+	else if (way == 6)
+		*entry = draw() % 2 ? 0 : any_size(4);
+	else
+		*entry = special[draw() % SPECIALS] * (draw() % 2 ? 1 : 1 + small);
 }
 
 static uint32_t most_from(real t)
 {
-    uint32_t most = 0;
-    int k;
-    MODEL.init(state);
-    MODEL.set(state, t, y);
-    for (k = 0; k < AHEAD; k++) {
-        const uint32_t spent = next_step();
-        most = spent > most ? spent : most;
-    }
-    return most;
+	uint32_t most = 0;
+	int k;
+	MODEL.init(state);
+	MODEL.set(state, t, y);
+	for (k = 0; k < AHEAD; k++) {
+		const uint32_t spent = next_step();
+		most = spent > most ? spent : most;
+	}
+	return most;
 }
 
 static uint32_t climbed(void)
 {
-    uint32_t best = 0;
-    int climb, i, j;
-    for (climb = 0; climb < CLIMBS; climb++) {
-        real kept[MOST], t = 0;
-        uint32_t top = 0;
-        for (i = 0; i < MODEL.states; i++)
-            y[i] = kept[i] = any_size(0);
-        for (j = 0; j < TRIES; j++) {
-            const real then = draw() % 8 ? t : (real)(draw() % 100000) / 7000;
-            uint32_t spent;
-            for (i = (int)(draw() % 3); i >= 0; i--)
-                change(&y[draw() % (uint32_t)MODEL.states]);
-            spent = most_from(then);
-            if (spent >= top) {
-                top = spent;
-                t = then;
-            }
-            for (i = 0; i < MODEL.states; i++)
-                *(spent >= top ? &kept[i] : &y[i]) = spent >= top ? y[i] : kept[i];
-        }
-        best = top > best ? top : best;
-    }
-    return best;
+	uint32_t best = 0;
+	int climb, i, j;
+	for (climb = 0; climb < CLIMBS; climb++) {
+		real kept[MOST], t = 0;
+		uint32_t top = 0;
+		for (i = 0; i < MODEL.states; i++)
+			y[i] = kept[i] = any_size(0);
+		for (j = 0; j < TRIES; j++) {
+			const real then = draw() % 8 ? t : (real)(draw() % 100000) / 7000;
+			uint32_t spent;
+			for (i = (int)(draw() % 3); i >= 0; i--)
+				change(&y[draw() % (uint32_t)MODEL.states]);
+			spent = most_from(then);
+			if (spent >= top) {
+				top = spent;
+				t = then;
+			}
+			for (i = 0; i < MODEL.states; i++)
+				*(spent >= top ? &kept[i] : &y[i]) = spent >= top ? y[i] : kept[i];
+		}
+		best = top > best ? top : best;
+	}
+	return best;
 }
 #else
 static uint32_t climbed(void)
 {
-    return 0;
+	return 0;
 }
 #endif
 
 int main(void)
 {
-    uint32_t most = 0, calls = 0, far;
-    uint64_t total = 0;
-    int i, j, k;
-    if (MODEL.size > sizeof state)
-        stop(3);
-    SYSTICK[1] = 0xFFFFFF;
-    SYSTICK[2] = 0;
-    SYSTICK[0] = 5; /* on, from the processor's clock, no interrupt */
-    for (j = 0; j < STARTS; j++) {
-        MODEL.init(state);
-        for (i = 0; i < MODEL.states; i++)
-            y[i] = any_size(j % 4 ? 12 * (j % 4) : 0);
-        MODEL.set(state, (real)(draw() % 100000) / 7, y);
-        for (k = 0; k < STEPS; k++) {
-            const uint32_t spent = next_step();
-            most = spent > most ? spent : most;
-            total += spent;
-            calls++;
-        }
-    }
-    far = climbed();
-    put_count((uint32_t)(total / calls));
-    put(" ");
-    put_count(far > most ? far : most);
-    put(" ");
-    put_count(COUNTED_STEP_MAX);
-    put("\n");
-    stop(0);
+	uint32_t most = 0, calls = 0, far;
+	uint64_t total = 0;
+	int i, j, k;
+	if (MODEL.size > sizeof state)
+		stop(3);
+	SYSTICK[1] = 0xFFFFFF;
+	SYSTICK[2] = 0;
+	SYSTICK[0] = 5; /* on, from the processor's clock, no interrupt */
+	for (j = 0; j < STARTS; j++) {
+		MODEL.init(state);
+		for (i = 0; i < MODEL.states; i++)
+			y[i] = any_size(j % 4 ? 12 * (j % 4) : 0);
+		MODEL.set(state, (real)(draw() % 100000) / 7, y);
+		for (k = 0; k < STEPS; k++) {
+			const uint32_t spent = next_step();
+			most = spent > most ? spent : most;
+			total += spent;
+			calls++;
+		}
+	}
+	far = climbed();
+	put_count((uint32_t)(total / calls));
+	put(" ");
+	put_count(far > most ? far : most);
+	put(" ");
+	put_count(COUNTED_STEP_MAX);
+	put("\n");
+	stop(0);
 }

@@ -12,9 +12,9 @@ void complain(const char *what);
 /* ---- constants_read.c ---- */
 
 struct list {
-    int count, room;
-    double *value;
-    const char **what;
+	int count, room;
+	double *value;
+	const char **what;
 };
 
 void append(struct list *list, double value, const char *what);
@@ -31,9 +31,9 @@ char *undamped_spec(uint64_t seed);
 /* h such that an entry is just beyond the middle of two floats, closer to it than doubles are: T = (1/2 + 2^-25)(1 +
  * 2^-60) */
 struct twice {
-    const char *name, *equation;
-    int (*angle)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);    /* h from T */
-    int times;
+	const char *name, *equation;
+	int (*angle)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);    /* h from T */
+	int times;
 };
 enum { TWICE = 7 };
 extern const struct twice twice[TWICE];

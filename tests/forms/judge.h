@@ -15,20 +15,20 @@
 /* A number in intervals, and whether it is 0: no path leads from its column to its row, or 4096 bits show nothing
  * there. */
 struct judged_number {
-    mpfi_t x;
-    bool zero;
+	mpfi_t x;
+	bool zero;
 };
 struct judge {
-    const struct linear *system;
-    mpq_srcptr h;
-    int states, loads, inputs, columns;     /* columns = states + loads + inputs */
-    bool undamped;                          /* kick-drift-kick may be asked for */
-    int *block;                             /* per coordinate */
-    struct judged_number *step;                    /* [segment][states x columns] */
-    struct judged_number *increment;               /* states x states */
-    struct judged_number *drift, *kick;            /* coordinates x coordinates, where undamped */
-    /* [steps][states x loads]: what a load adds in the step so many steps after; NULL: nothing, or it changes */
-    struct judged_number *turned;
+	const struct linear *system;
+	mpq_srcptr h;
+	int states, loads, inputs, columns;     /* columns = states + loads + inputs */
+	bool undamped;                          /* kick-drift-kick may be asked for */
+	int *block;                             /* per coordinate */
+	struct judged_number *step;                    /* [segment][states x columns] */
+	struct judged_number *increment;               /* states x states */
+	struct judged_number *drift, *kick;            /* coordinates x coordinates, where undamped */
+	/* [steps][states x loads]: what a load adds in the step so many steps after; NULL: nothing, or it changes */
+	struct judged_number *turned;
 };
 enum { JUDGED_TURNS = 32 };
 struct judge *judge_of(const struct linear *system, mpq_srcptr h);

@@ -22,8 +22,8 @@ typedef pl_model real_model;
 #endif
 
 struct variant {
-    const real_model *model;
-    const real *Phi;                        /* states x states */
+	const real_model *model;
+	const real *Phi;                        /* states x states */
 };
 
 /* The variant MODEL_FORM, or NULL */

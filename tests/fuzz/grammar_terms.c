@@ -42,12 +42,13 @@ struct both join2(const char *spec, const char *c, int count, const struct both 
 		int used = 0;
 		size_t n = 0;
 		for (const char *p = form[k]; *p; p++) {
-                    const char one[2] = { *p, 0 }, *piece = *p != '@' ? one : k ? operand[used].c : operand[used].spec;
-                    used += *p == '@';
-                    if (used > count || n + strlen(piece) >= ROOM)
-                        exit(3);
-                    strcpy(line[k] + n, piece);
-                    n += strlen(piece);
+					const char one[2] = { *p, 0 }, *piece = *p != '@' ? one : k ? operand[used].c
+							: operand[used].spec;
+					used += *p == '@';
+					if (used > count || n + strlen(piece) >= ROOM)
+						exit(3);
+					strcpy(line[k] + n, piece);
+					n += strlen(piece);
 		}
 		line[k][n] = 0;
 	}
@@ -246,9 +247,10 @@ static struct both regional(int depth)
 		fixed(1, 3));
 	/* nothing rests there */
 	case 8: return JOIN2("@*sgn(@ - @)", "@*sgn(@ - @)", fixed(0.05, 0.5), position(), fixed(0.001, 0.002));
-        case 9:
-            return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0)) : JOIN("deadzone(@, -@, @)", e, a, a);
-        case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
+		case 9:
+			return depth > 0 ? JOIN("(@ - @)", regional(depth - 1), regional(0))
+					: JOIN("deadzone(@, -@, @)", e, a, a);
+		case 10: return JOIN2("deadzone(max(@, 0), @, @)", "deadzone(fmax(@, 0), @, @)", e, fixed(0.01, 0.1),
 		fixed(0.16, 0.3));      /* the lower one may be 1/7 */
 	case 11: case 12: return JOIN("@*@", k, extreme_in_extreme(e));
 	default: return JOIN2("@*max(@, @)", "@*fmax(@, @)", k, e, position());
@@ -294,10 +296,11 @@ static struct both kinked(void)
 	case 2: return JOIN2("(@ > @ ? (@ - @)^2 : 0)", "(@ > @ ? pow(@ - @, 2) : 0)", x, same("0.1"), x, same("0.1"));
 	case 3: return JOIN2("sqrt(abs(@))*0.2", "sqrt(fabs(@))*0.2", w);
 	case 4: return JOIN2("min(@^2, 0.04)", "fmin(pow(@, 2), 0.04)", x);
-        case 5:
-            return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2), fixed(0, 2), x);
+		case 5:
+			return JOIN2("(t < @ ? @ : 0.5)*@^2", "(t < @ ? @ : 0.5)*pow(@, 2)", change_at(0.02, 0.2),
+					fixed(0, 2), x);
 	case 6: case 7: return JOIN("@*@", fixed(0.5, 5), extreme_in_extreme(x));
-        default: return JOIN("@ + @", regional(1), smooth_remainder());
+		default: return JOIN("@ + @", regional(1), smooth_remainder());
 	}
 }
 

@@ -36,29 +36,29 @@
 #include "numbers.h"
 
 typedef struct MODEL {
-    real y[MODEL_STATES], low[MODEL_STATES], start[MODEL_STATES], gain[MODEL_STATES], poly[4][MODEL_STATES];
-    real at, at_low, size, per, want, scale[MODEL_STATES], unit[MODEL_STATES];
-    double t;
-    int back, stop, ready, status;
+	real y[MODEL_STATES], low[MODEL_STATES], start[MODEL_STATES], gain[MODEL_STATES], poly[4][MODEL_STATES];
+	real at, at_low, size, per, want, scale[MODEL_STATES], unit[MODEL_STATES];
+	double t;
+	int back, stop, ready, status;
 } MODEL;
 
 static void PL(inputs_now)(const MODEL *s, const real u[], real start[], real slope[])
 {
-    (void)s, (void)u;
-    start[0] = slope[0] = 0;
+	(void)s, (void)u;
+	start[0] = slope[0] = 0;
 }
 
 static void PL(known)(const MODEL *s, real tau, real inside, int segment, const real start[], const real slope[],
-                      real known[])
+					  real known[])
 {
-    (void)inside, (void)segment, (void)start, (void)slope;
-    known[0] = (real)s->t + tau;
+	(void)inside, (void)segment, (void)start, (void)slope;
+	known[0] = (real)s->t + tau;
 }
 
 static void PL(linearize)(const real known[], const int interval[], const real y[], real left[], real jacobian[])
 {
-    (void)interval;
-    PL(motion)(known[0], y, left, jacobian);
+	(void)interval;
+	PL(motion)(known[0], y, left, jacobian);
 }
 
 /* Of all three the tables are the same: filled once, from the nodes. */
@@ -66,22 +66,23 @@ static real PL(node)[3], PL(once)[3][3], PL(twice)[3][3], PL(monomial)[3][3];
 
 static void PL(tables)(void)
 {
-    int i, j, m;
-    for (j = 0; j < 3; j++) {
-        const double a = nodes[(j + 1) % 3], b = nodes[(j + 2) % 3], scale = 1 / ((nodes[j] - a) * (nodes[j] - b));
-        const double c[3] = {a * b * scale, -(a + b) * scale, scale}; /* is 1 at node j and 0 at the others */
-        PL(node)[j] = (real)nodes[j];
-        for (i = 0; i < 3; i++) {
-            double once = 0, twice = 0;
-            for (m = 0; m < 3; m++) {
-                once += c[m] * pow(nodes[i], m + 1) / (m + 1);
-                twice += c[m] * pow(nodes[i], m + 2) / ((m + 1) * (m + 2));
-            }
-            PL(once)[i][j] = (real)once;
-            PL(twice)[i][j] = (real)twice;
-            PL(monomial)[i][j] = (real)c[i];
-        }
-    }
+	int i, j, m;
+	for (j = 0; j < 3; j++) {
+		const double a = nodes[(j + 1) % 3], b = nodes[(j + 2) % 3],
+				scale = 1 / ((nodes[j] - a) * (nodes[j] - b));
+		const double c[3] = {a * b * scale, -(a + b) * scale, scale}; /* is 1 at node j and 0 at the others */
+		PL(node)[j] = (real)nodes[j];
+		for (i = 0; i < 3; i++) {
+			double once = 0, twice = 0;
+			for (m = 0; m < 3; m++) {
+				once += c[m] * pow(nodes[i], m + 1) / (m + 1);
+				twice += c[m] * pow(nodes[i], m + 2) / ((m + 1) * (m + 2));
+			}
+			PL(once)[i][j] = (real)once;
+			PL(twice)[i][j] = (real)twice;
+			PL(monomial)[i][j] = (real)c[i];
+		}
+	}
 }
 
 #include "radau.h"
@@ -89,9 +90,9 @@ static void PL(tables)(void)
 /* A step of h */
 static void JOIN(MODEL, step)(MODEL *s)
 {
-    const int wrong = JOIN(MODEL, collocated)(s, NULL);
-    s->t += MODEL_H;
-    JOIN(MODEL, settle)(s, wrong);
+	const int wrong = JOIN(MODEL, collocated)(s, NULL);
+	s->t += MODEL_H;
+	JOIN(MODEL, settle)(s, wrong);
 }
 
 #undef PASTE

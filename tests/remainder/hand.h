@@ -9,16 +9,16 @@ typedef long double real;
 enum { HAND_MOST = 40 };                    /* entries of w: states, load states, inputs, slopes of the inputs */
 
 struct system {
-    const char *name;
-    int states, loads, inputs;
-    real start[HAND_MOST];                  /* the spec's initial state */
-    /* as written; u: inputs, then their slopes */
-    void (*equations)(real t, const real *y, const real *u, real *dydt);
-    void (*loads_at)(real t, real *z);      /* load states; NULL where there are none */
-    /* size x size, zeroed before: operator, columns and rows of the loads */
-    void (*linear)(const struct system *s, int which, real *A);
-    int operators;                          /* of a bank; 0 counts as 1 */
-    int (*choose)(real t, const real *y);   /* which of them a step from there takes; NULL: the first */
+	const char *name;
+	int states, loads, inputs;
+	real start[HAND_MOST];                  /* the spec's initial state */
+	/* as written; u: inputs, then their slopes */
+	void (*equations)(real t, const real *y, const real *u, real *dydt);
+	void (*loads_at)(real t, real *z);      /* load states; NULL where there are none */
+	/* size x size, zeroed before: operator, columns and rows of the loads */
+	void (*linear)(const struct system *s, int which, real *A);
+	int operators;                          /* of a bank; 0 counts as 1 */
+	int (*choose)(real t, const real *y);   /* which of them a step from there takes; NULL: the first */
 };
 
 /* Entries of w. */

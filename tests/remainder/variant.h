@@ -11,8 +11,8 @@
 #include <string.h>
 
 struct variant {
-    const pl_model *model;
-    const double *Phi;                      /* states x states */
+	const pl_model *model;
+	const double *Phi;                      /* states x states */
 };
 
 /* The variant of this name; a test that asks for one that was not made cannot go on. */
@@ -21,16 +21,16 @@ __attribute__((format(printf, 2, 3), unused))
 #endif
 static const struct variant *variant_of(const struct variant *table, const char *format, ...)
 {
-    char name[200];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(name, sizeof name, format, arguments);
-    va_end(arguments);
-    for (; table->model; table++)
-        if (strcmp(table->model->name, name) == 0)
-            return table;
-    printf("Bail out! no variant %s\n", name);
-    exit(99);
+	char name[200];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(name, sizeof name, format, arguments);
+	va_end(arguments);
+	for (; table->model; table++)
+		if (strcmp(table->model->name, name) == 0)
+			return table;
+	printf("Bail out! no variant %s\n", name);
+	exit(99);
 }
 
 #endif

@@ -9,14 +9,14 @@
 enum { SECONDS = 6, PARTS = 2, SAMPLES = SECONDS * PARTS, ROOM = 400 };
 
 struct truth {
-    real y[SAMPLES + 1][MOST_OF_STATES], crossed[ROOM];
-    int count;
-    double most;
+	real y[SAMPLES + 1][MOST_OF_STATES], crossed[ROOM];
+	int count;
+	double most;
 };
 
 struct found {
-    double error, time;                 /* largest of a state, over the largest state; of a crossing's time */
-    int count, status;
+	double error, time;                 /* largest of a state, over the largest state; of a crossing's time */
+	int count, status;
 };
 
 struct truth truth_of(const struct switched_system *s);

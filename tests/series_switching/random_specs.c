@@ -6,8 +6,8 @@
 
 int main(int argc, char **argv)
 {
-    if (argc != 3)
-        return 2;
-    print_switched(stdout, (unsigned)strtoul(argv[2], NULL, 10));
-    return 0;
+	if (argc != 3)
+		return 2;
+	print_switched(stdout, (unsigned)strtoul(argv[2], NULL, 10));
+	return 0;
 }

@@ -9,15 +9,15 @@
 enum { MOST_EXPRESSIONS = 12, MOST_BREAKS = 3, MOST_OF_STATES = 6 };
 
 struct switched_system {
-    const char *name;
-    int states, expressions;
-    real start[MOST_OF_STATES];
-    equations *f;                           /* reads `interval_of` */
-    void (*e)(real t, const real *y, real *e);
-    int breaks[MOST_EXPRESSIONS];
-    real at[MOST_EXPRESSIONS][MOST_BREAKS];
-    real change;                            /* when a load changes its formula; 0: none does */
-    real piece;                             /* in which an expression passes no two breakpoints; 0: 1/64 */
+	const char *name;
+	int states, expressions;
+	real start[MOST_OF_STATES];
+	equations *f;                           /* reads `interval_of` */
+	void (*e)(real t, const real *y, real *e);
+	int breaks[MOST_EXPRESSIONS];
+	real at[MOST_EXPRESSIONS][MOST_BREAKS];
+	real change;                            /* when a load changes its formula; 0: none does */
+	real piece;                             /* in which an expression passes no two breakpoints; 0: 1/64 */
 };
 
 extern const struct switched_system switched_systems[];

@@ -89,11 +89,12 @@ static void gear_at(const struct gear *g, const struct hand_system *system, int 
 			m->state_names[i]) && good;
 		worst = worse(worst, fabs(y[i] - (double)by_hand.y[i]));
 	}
-        good = close_to((double)of->crossed(r.state), (double)by_hand.crossings, 0, "changes of region by hand") &&
-               good;
-        ok(good, "%s, h = %g: by hand, %ld changes of region (largest difference %.2g)", g->name, m->h,
-           by_hand.crossings, worst);
-        ok(m->status(r.state) == 0, "%s, h = %g: status 0", g->name, m->h);
+		good = close_to((double)of->crossed(r.state), (double)by_hand.crossings, 0,
+				"changes of region by hand") &&
+			   good;
+		ok(good, "%s, h = %g: by hand, %ld changes of region (largest difference %.2g)", g->name, m->h,
+		   by_hand.crossings, worst);
+		ok(m->status(r.state) == 0, "%s, h = %g: status 0", g->name, m->h);
 	run_free(&r);
 }
 
@@ -124,17 +125,20 @@ static void bilinear(int step)
 	bool good = close_to(count, 2 * PERIODS, 0, "crossings");
 	double worst = 0;
 	for (int i = 0; i + 2 < count; i++) {
-            good = close_to(time[i + 2] - time[i], period, 1e-12 * period, "h = %g, period from crossing %d",
-                            of->model->h, i) &&
-                   good;
-            good = close_to(time[i + 1] - time[i], crossing[i].upward ? up : down, 1e-12 * period,
-                            "h = %g, crossing %d to the next", of->model->h, i) &&
-                   good;
-            worst = worse(worst, fabs(time[i + 2] - time[i] - period));
+			good = close_to(time[i + 2] - time[i], period, 1e-12 * period,
+					"h = %g, period from crossing %d",
+							of->model->h, i) &&
+				   good;
+			good = close_to(time[i + 1] - time[i], crossing[i].upward ? up : down, 1e-12 * period,
+							"h = %g, crossing %d to the next", of->model->h, i) &&
+				   good;
+			worst = worse(worst, fabs(time[i + 2] - time[i] - period));
 	}
-        ok(good, "bilinear, h = %g: period pi/w1 + pi/w2 over %d periods (largest difference %.2g)", of->model->h,
-           PERIODS, worst);
-        good = close_to(time[0], up, 1e-13, "first crossing") && close_to(crossing[0].upward, 0, 0, "its direction");
+		ok(good, "bilinear, h = %g: period pi/w1 + pi/w2 over %d periods (largest difference %.2g)",
+				of->model->h,
+		   PERIODS, worst);
+		good = close_to(time[0], up, 1e-13, "first crossing") &&
+				close_to(crossing[0].upward, 0, 0, "its direction");
 	for (int i = 1; i < count; i++)
 		good = close_to(crossing[i].upward, !crossing[i - 1].upward, 0, "direction of crossing %d", i) && good;
 	ok(good, "bilinear, h = %g: up and down in turn", of->model->h);

@@ -143,8 +143,9 @@ void print_spec(FILE *to, const char *name, const struct hand_system *s, unsigne
 		fprintf(to, ", x%d", i + 1);
 	fputs("\ninit ", to);
 	for (int i = 0; i < s->n; i++)
-            fprintf(to, "%s x%d = %.17Lg, x%d' = %.17Lg", i ? "," : "", i + 1, s->start[i], i + 1, s->start[s->n + i]);
-        fputc('\n', to);
+			fprintf(to, "%s x%d = %.17Lg, x%d' = %.17Lg", i ? "," : "", i + 1, s->start[i], i + 1,
+					s->start[s->n + i]);
+		fputc('\n', to);
 	for (int j = 0; j < s->stops; j++)
 		print_stop(to, s, j, (int)((seed + 3 * (unsigned)j) % 8));
 	for (int i = 0; i < s->n; i++) {

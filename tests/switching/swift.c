@@ -50,7 +50,7 @@ static bool same_crossings(const struct outcome *a, const struct outcome *b, dou
 }
 
 static void compare(const char *name, int start, const struct outcome *swift, const struct outcome *search, int states,
-    double h)
+	double h)
 {
 	double size = DBL_MIN, apart = 0;
 	tally.unsure += !swift->sure;
@@ -151,7 +151,7 @@ MODEL(bilinear_1, 2, 2, NO_LOADS)
 
 /* least: that many of all starts it has to be sure of, and of so many that cross */
 static void all_starts(const char *name, void (*one)(int start, const struct place *p), struct place p, int least,
-    int least_once)
+	int least_once)
 {
 	tally = (struct tally){ 0 };
 	for (int i = 0; i < STARTS; i++)

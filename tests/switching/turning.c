@@ -46,9 +46,10 @@ static int check(void)
 		worst = worse(worst, fabs((double)out[0] - (double)u[0]) / 1.2);
 		speed = worse(speed, fabs((double)out[2] - 100) / 100);
 	}
-        printf("# torque off by %.3g of its size, at most %.3g; speed by %.3g, at most %.3g\n", worst, TORQUE, speed,
-               TORQUE);
-        return worst <= TORQUE && speed <= TORQUE && rig_status(&s) == 0;
+		printf("# torque off by %.3g of its size, at most %.3g; speed by %.3g, at most %.3g\n", worst, TORQUE,
+				speed,
+			   TORQUE);
+		return worst <= TORQUE && speed <= TORQUE && rig_status(&s) == 0;
 }
 #elif KIND == 2
 /* J1 x1' + J2 x2' + 3/2 J3 x3' */

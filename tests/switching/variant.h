@@ -8,10 +8,10 @@
 enum { MOST_EVENTS = 128, MOST_STATES = 16 };    /* NAME_MAX_EVENTS, states: of the largest model here */
 
 struct variant {
-    const pl_model *model;
-    int (*region)(const void *s);
-    uint64_t (*crossed)(const void *s);
-    int (*crossings)(const void *s, pl_crossing *crossing);
+	const pl_model *model;
+	int (*region)(const void *s);
+	uint64_t (*crossed)(const void *s);
+	int (*crossings)(const void *s, pl_crossing *crossing);
 };
 
 #endif

@@ -9,13 +9,13 @@
 enum { STEPS = 60, HALF = STEPS / 2, MOST = 40, MOST_CHANGES = 5 };
 
 struct subject {
-    const char *name;
-    equations *f;                       /* NULL: that of `systems` */
-    real piece;                         /* of the second road: below 4 over the fastest rate; 0: 0.05 */
-    int steps;                          /* 0: STEPS */
-    double bound, between;              /* of errors, over the largest value of the state; 0: the test's own */
-    int changes;
-    real change[MOST_CHANGES];          /* when formulas change */
+	const char *name;
+	equations *f;                       /* NULL: that of `systems` */
+	real piece;                         /* of the second road: below 4 over the fastest rate; 0: 0.05 */
+	int steps;                          /* 0: STEPS */
+	double bound, between;              /* of errors, over the largest value of the state; 0: the test's own */
+	int changes;
+	real change[MOST_CHANGES];          /* when formulas change */
 };
 
 /* timed.spec, changing.spec and masses.spec */
@@ -33,7 +33,7 @@ void *fresh(const pl_model *m);         /* an instance at its start; to be freed
 void look(double *worst, const pl_model *m, const double *found, const real *expected, const double *most);
 
 struct found {
-    double step, middle, end;           /* largest differences, over the largest value of the state */
+	double step, middle, end;           /* largest differences, over the largest value of the state */
 };
 
 /* States after steps, NAME_at in the middle of each, and at its end beside the step, with random samples. What the

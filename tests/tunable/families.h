@@ -13,8 +13,8 @@ enum { BITS = 53 };
 
 /* Of pair.spec; `draw` returns h */
 extern const struct family {
-    const char *name;
-    real (*draw)(real *p);
+	const char *name;
+	real (*draw)(real *p);
 } families[];
 extern const int family_count;
 

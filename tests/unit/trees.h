@@ -14,24 +14,24 @@ enum { CASES = 600, COORDS = 2, LEAVES = 2 * COORDS + 1, MOST = 7, BITS = 500 };
 enum kind { NUMBER, TIME, WAVE, STATE, SUM, DIFFERENCE, PRODUCT, QUOTIENT, POWER, RAISED, CALL, CHOICE };
 
 struct tree {
-    enum kind kind;
-    mpq_t number;               /* NUMBER; of WAVE its frequency */
-    int index, order;           /* STATE */
-    unsigned exponent;          /* POWER */
-    enum function function;     /* CALL */
-    enum comparison comparison; /* CHOICE: x0 ? x1 then x2 else x3 */
-    int children;
-    struct tree *child[MOST];
+	enum kind kind;
+	mpq_t number;               /* NUMBER; of WAVE its frequency */
+	int index, order;           /* STATE */
+	unsigned exponent;          /* POWER */
+	enum function function;     /* CALL */
+	enum comparison comparison; /* CHOICE: x0 ? x1 then x2 else x3 */
+	int children;
+	struct tree *child[MOST];
 };
 
 struct at { mpq_t state[COORDS][2], t; };
 
 /* What may fail for good reasons, as where a constant divides by 0 */
 struct attempt {
-    const struct tree *tree;
-    struct form *form, **slope;
-    int coord, order;
-    struct point *point;
+	const struct tree *tree;
+	struct form *form, **slope;
+	int coord, order;
+	struct point *point;
 };
 
 extern bool constants_only;         /* no state and no time in what is drawn */

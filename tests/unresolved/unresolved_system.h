@@ -11,12 +11,12 @@
 enum { UNRESOLVED_SECONDS = 12, UNRESOLVED_KINDS = 22, UNRESOLVED_FIRST_GIVEN = 1000000, UNRESOLVED_GIVEN = 5 };
 
 struct unresolved {
-    int kind, masses;
-    double tolerance, step;
-    double stiffness, damping, cubic, force, frequency; /* of the first mass and what drives it */
-    double size, steep, at, until;                      /* of what is not seen */
-    int power;
-    double start[4];                                    /* x, y, x', y', or x, x' */
+	int kind, masses;
+	double tolerance, step;
+	double stiffness, damping, cubic, force, frequency; /* of the first mass and what drives it */
+	double size, steep, at, until;                      /* of what is not seen */
+	int power;
+	double start[4];                                    /* x, y, x', y', or x, x' */
 };
 
 struct unresolved unresolved_of(unsigned seed);

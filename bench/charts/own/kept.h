@@ -21,7 +21,8 @@ INLINE void model_slope(double t, const double *y, double *f)
  * next one, where a step is better than what is read inside a longer one. length: h of its struct, or NULL; whole:
  * makes its state of the model's, which stands behind `skip` entries of it */
 static inline bool kept_history(struct adaptive *a, const struct kind *kind, double setting, double *length,
-                                void (*whole)(const double *y, double *state), int skip, double *rows)
+								void (*whole)(const double *y, double *state), int skip,
+								double *rows)
 {
 	const struct problem problem = {.name = "", .n = a->n, .unit = history.every, .start = history.start};
 	const struct solver *solver = kind->solver;

@@ -7,7 +7,7 @@
 #include "kept.h"
 
 enum { OWN_COORDINATES = SECOND_ORDER ? N / 2 : N, WHOLE = 2 * OWN_COORDINATES,
-       MOST_COORDINATES = OWN_COORDINATES > 7 ? OWN_COORDINATES : 7 };         /* the method's own systems: 7 */
+	   MOST_COORDINATES = OWN_COORDINATES > 7 ? OWN_COORDINATES : 7 };         /* the method's own systems: 7 */
 
 INLINE void whole_slope(double t, const double *state, double *f)
 {

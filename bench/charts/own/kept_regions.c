@@ -13,7 +13,7 @@
 #include "subject_pl.c"
 
 enum { SIZE = sizeof *subject_row / sizeof **subject_row, LEVELS = 28 + 9,
-       EXPRESSIONS = sizeof subject_breaks / sizeof *subject_breaks };
+	   EXPRESSIONS = sizeof subject_breaks / sizeof *subject_breaks };
 static double row[EXPRESSIONS][SIZE], generator[REGIONS][SIZE * SIZE], *Phi[REGIONS][LEVELS];
 
 /* Of columns: x = T y, its inverse; of states kept otherwise than they are written */
