@@ -224,6 +224,7 @@ struct form *time_part(const struct form *form, bool atoms); /* its terms of tim
 
 /* Of highest derivatives: what they are, and residuals M x - f as they are written, which a series follows, since M and
  * f multiplied out have more products */
+struct kink { const struct form *of, *solved; };    /* what chooses formulas by its sign; the same of the solution */
 struct written_system {
 	int rows;
 	const struct basis *highest;
@@ -231,6 +232,8 @@ struct written_system {
 	/* their derivatives by these, where they are not linear in them: M and f are of Newton's last step; or NULL */
 	const struct form *const *slope;
 	const struct form **found;  /* then what is not linear in each, of their solution */
+	int kinks;                  /* then of these as they are written and at iterates of Newton's method */
+	const struct kink *kink;
 };
 struct linear_system {              /* M x = f, n x n, row by row */
 	int n;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Equations that are not linear in highest derivatives u or multipliers, friction apart: M u + N(u) = f. Newton's
  * method starts from M u = f, or from M u + N_u(0) u = f - N(0) where M does not determine u. Its iterates are forms,
- * of the unknowns in N alone; the last step is a linear system of all unknowns, which takes the place of M u = f. */
+ * of the unknowns in N alone; the last step is a linear system of all unknowns, which takes the place of M u = f.
+ * Where N has kinks, all iterates have the formulas that hold for the solution, from event to event. */
 #include "building.h"
 #include "math/math.h"
 #include "state_mass.h"
@@ -10,35 +11,15 @@ enum { ITERATES = 12 };                     /* from far away some halve their er
 
 /* ---- what is not linear ---- */
 
-/* The name of a multiplier that stands there; NULL: none does */
-static const char *multiplier_within(const struct building *b, const struct atom *atom)
-{
-	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-	const struct form *form = form_unit((struct basis){ .kind = BASIS_ATOM, .index = atom->index, .atom = atom });
-	const char *name = NULL;
-	for (const struct form_term **term = terms_within(form, seen); *term; term++)
-		if ((*term)->basis.kind == BASIS_COORD && (*term)->basis.index >= b->model->n)
-			name = b->model->names.coord[(*term)->basis.index];
-	return name;
-}
-
-static _Noreturn void report_kink(const struct building *b, const struct atom *atom)
-{
-	const char *text = text_between(atom->node->start, atom->node->end), *name = multiplier_within(b, atom);
-	if (name)
-		error(atom->node->start, "a force takes smooth functions of it; 'friction' takes its size",
-		      "'%s' has a kink in the multiplier '%s', which is solved for with accelerations", text, name);
-	error(atom->node->start, "smooth functions of them are solved for",
-	      "'%s' has a kink in highest derivatives", text);
-}
-
-void check_smooth(const struct building *b, const struct form *form)
+void refuse_jumps_of_solved(const struct building *b, const struct form *form)
 {
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct atom *a = (*term)->basis.atom;
-		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function > FN_ATAN2)))
-			report_kink(b, a);
+		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN)))
+			error(a->node->start, "abs, min, max, clip, deadzone and table have none",
+			      "'%s' jumps with what equations are solved for: they may have no solution then, or two",
+			      text_between(a->node->start, a->node->end));
 	}
 }
 
@@ -178,14 +159,25 @@ struct newton {                     /* M u + N(u) = f */
 	const struct form *(*u)[ITERATES]; /* [column] */
 };
 
-static void list_nonlinear(struct nonlinear_terms *terms, int n)
+static bool reads_unknown(const struct building *b, const struct form *form, const struct basis *x)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool reads = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		reads = reads || ((*term)->basis.kind == BASIS_COORD && (*term)->basis.index == x->index &&
+				  (*term)->basis.order == x->order);
+	return reads;
+}
+
+static void list_nonlinear(const struct building *b, const struct basis *unknown, struct nonlinear_terms *terms,
+			   int n)
 {
 	for (int i = 0; i < n; i++) {
 		bool any = false;
 		if (terms->N[i]->terms)
 			*MORE(terms->row, terms->rows) = i;
 		for (int k = 0; k < n; k++)
-			any = any || terms->slope[k * n + i]->terms;
+			any = any || reads_unknown(b, terms->N[k], &unknown[i]);
 		if (any)
 			*MORE(terms->column, terms->columns) = i;
 	}
@@ -293,14 +285,56 @@ static struct linear_system last_step(const struct newton *g, bool single, struc
 	return (struct linear_system){ n, M, f, written };
 }
 
-struct linear_system newton_system(struct collector *c, const struct node *node, const struct linear_system *linear,
-				   struct nonlinear_terms *terms, bool single)
+/* ---- kinks ---- */
+
+/* Of an atom that reads unknowns: what chooses its formulas by its sign, into *all; returns how many there are then */
+static int add_kinks(const struct atom *a, const struct form ***all, int count)
 {
+	const struct form *const *x = a->operand;
+	const bool calls = a->kind == ATOM_CALL, selects = calls && (a->function == FN_MIN || a->function == FN_MAX);
+	const bool clips = calls && (a->function == FN_CLIP || a->function == FN_DEADZONE);
+	struct straight *piece;
+	const int pieces = calls && a->function == FN_TABLE ? pieces_of_atom(a, &piece) : 0;
+	for (int i = 0; i + 1 < pieces; i++)
+		*MORE(*all, count) = form_difference(x[0], form_constant(piece[i].end));
+	for (int i = 1; i < (clips ? 3 : 0); i++)
+		*MORE(*all, count) = form_difference(x[0], x[i]);
+	for (int i = 0; i < (selects ? a->operands : 0); i++)
+		for (int j = 0; j < i; j++)
+			*MORE(*all, count) = form_difference(x[j], x[i]);
+	if (calls && a->function == FN_ABS)
+		*MORE(*all, count) = x[0];
+	return count;
+}
+
+static int find_kinks(const struct building *b, const struct nonlinear_terms *terms, const struct form ***all)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	int count = 0;
+	for (int k = 0; k < terms->rows; k++)
+		for (const struct form_term **term = terms_within(terms->N[terms->row[k]], seen); *term; term++)
+			if ((*term)->basis.atom && (*term)->basis.atom->highest)
+				count = add_kinks((*term)->basis.atom, all, count);
+	return count;
+}
+
+/* Behind those that are written, and of earlier iterates */
+static void add_kinks_at(const struct newton *g, int iterate, int kinks, struct kink *all)
+{
+	struct point *there = point_of_iterate(g, iterate);
+	for (int i = 0; i < kinks; i++)
+		all[(iterate + 1) * kinks + i].of = form_at(there, all[i].of);
+}
+
+struct linear_system newton_system(struct building *b, const struct node *node, const struct linear_system *linear,
+				   struct nonlinear_terms *terms)
+{
+	struct collector *c = &b->collector;
 	struct newton g = { .c = c, .linear = linear, .terms = terms, .node = node };
 	const int n = linear->n;
 	struct written_system *written = NEW(struct written_system);
 	const struct form **slope = ARRAY(const struct form *, n * n);
-	list_nonlinear(terms, n);
+	list_nonlinear(b, linear->written->highest, terms, n);
 	start_iterates(&g);
 	for (int t = 0; t < ITERATES - 1; t++)
 		add_iterate(&g, t);
@@ -309,11 +343,22 @@ struct linear_system newton_system(struct collector *c, const struct node *node,
 	*written = *linear->written;
 	written->slope = slope;
 	written->found = ARRAY(const struct form *, n);
-	const struct linear_system e = last_step(&g, single, written);
+	const struct form **kink = NULL;
+	const int kinks = find_kinks(b, terms, &kink);
+	struct kink *all = ARRAY(struct kink, (size_t)(kinks * (ITERATES + 1)) + 1);
+	for (int i = 0; i < kinks; i++)
+		all[i].of = kink[i];
+	for (int t = 0; t < ITERATES && kinks > 0; t++)
+		add_kinks_at(&g, t, kinks, all);
+	const struct linear_system e = last_step(&g, b->request->single, written);
 	for (int j = 0; j < terms->columns; j++)
 		g.u[j][ITERATES - 1] = kept_solution(c, node, &e, terms->column[j]);
 	struct point *there = point_of_iterate(&g, ITERATES - 1);
 	for (int i = 0; i < n; i++)
 		written->found[i] = form_at(there, terms->N[i]);
+	written->kinks = kinks * (ITERATES + 1);
+	written->kink = all;
+	for (int i = 0; i < written->kinks; i++)
+		all[i].solved = form_at(there, kink[i % kinks]);
 	return e;
 }

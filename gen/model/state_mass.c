@@ -264,11 +264,9 @@ static void solve_block(struct solving *w, int block)
 	for (int i = 0; i < n && terms; i++)
 		F[i] = form_sum(F[i], terms->N[i], false);
 	struct written_system *written = NEW(struct written_system);
-	*written = (struct written_system){ n, highest, F, NULL, NULL };
+	*written = (struct written_system){ .rows = n, .highest = highest, .residual = F };
 	const struct linear_system linear = { n, M, f, written },
-				   e = terms ? newton_system(&w->b->collector, node, &linear, terms,
-							     w->b->request->single)
-					     : linear;
+				   e = terms ? newton_system(w->b, node, &linear, terms) : linear;
 	w->b->model->equations.moving_mass = node;
 	if (terms)
 		w->b->model->equations.implicit = node;
@@ -286,7 +284,7 @@ static void solve_blocks(void *context)
 {
 	struct solving *w = context;
 	for (int i = 0; i < w->n; i++)
-		check_smooth(w->b, without_friction(residual_of(w, i)));
+		refuse_jumps_of_solved(w->b, without_friction(residual_of(w, i)));
 	for (int j = 0; j < w->n; j++)
 		find_column(w, j);
 	find_blocks(w);

@@ -35,21 +35,20 @@ const struct form **accelerations_by(struct building *b, const struct form *cons
 /* ---- newton.c: equations that are not linear in highest derivatives or multipliers ---- */
 
 struct basis;
-struct collector;
 struct node;
 struct nonlinear_terms {            /* N of n equations, and its derivatives by all n unknowns */
 	const struct form **N, **slope;
 	int rows, *row, columns, *column; /* where there are some: newton_system finds them */
 };
-/* Kinks in them are errors. */
-void check_smooth(const struct building *b, const struct form *form);
+/* Jumps of highest derivatives and multipliers, or by them, are errors. */
+void refuse_jumps_of_solved(const struct building *b, const struct form *form);
 /* What residuals F, whose derivatives are J, hold that is not linear; NULL: nothing. It is taken out of them. */
 struct nonlinear_terms *take_nonlinear_terms(struct building *b, const struct node *node, int n,
 					     const struct basis *unknown, const struct form *const *J,
 					     const struct form **F);
 /* Solved for u of M u + N(u) = f, where M u = f is `linear` */
-struct linear_system newton_system(struct collector *c, const struct node *node, const struct linear_system *linear,
-				   struct nonlinear_terms *terms, bool single);
+struct linear_system newton_system(struct building *b, const struct node *node, const struct linear_system *linear,
+				   struct nonlinear_terms *terms);
 
 /* ---- constraints.c ---- */
 

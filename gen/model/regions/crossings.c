@@ -90,8 +90,9 @@ static void follow_atom(struct following *f, const struct atom *a)
 		follow_choice(f, a);
 	if (a->kind == ATOM_CALL)
 		follow_call(f, a);
-	for (int i = 0; i < a->operands; i++)
-		follow_form(f, a->operand[i]);
+	const struct written_system *written = a->written && a->written->slope ? a->written : NULL;
+	for (int i = 0; i < (written ? written->rows : a->operands); i++)       /* operands have iterates */
+		follow_form(f, written ? written->residual[i] : a->operand[i]);
 }
 
 static void follow_form(struct following *f, const struct form *form)

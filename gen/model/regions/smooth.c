@@ -27,6 +27,7 @@ struct surface {
 	const struct node *test;    /* the comparison itself */
 	bool equality;              /* some == or != does */
 	bool abrupt;                /* something decides that is no abs, min, max, clip, deadzone or table */
+	bool implicit;              /* g reads what equations are solved for: it is judged by its kind */
 };
 
 struct search {
@@ -90,6 +91,7 @@ static void add_surface(void *context, const struct form *d)
 		*MORE(s->surface, s->surfaces) = (struct surface){ .g = g, .full = f->full, .test = a->node };
 	s->surface[at].equality |= (a->kind == ATOM_COMPARE && a->comparison >= CMP_EQ) || a->kind == ATOM_CHOOSE;
 	s->surface[at].abrupt |= a->kind != ATOM_CALL || a->function == FN_SGN;
+	s->surface[at].implicit |= a->highest;
 }
 
 static void add_decision(void *context, const struct form *d)
@@ -105,7 +107,10 @@ static void find_surfaces(struct search *s, const struct form *form, const struc
 			continue;
 		s->seen[a->index] = true;
 		visit_decisions(a, add_decision, &(struct finding){ s, a, full ? full : a });
-		for (int k = 0; k < a->operands; k++)
+		const struct written_system *written = a->written && a->written->slope ? a->written : NULL;
+		for (int k = 0; written && k < written->rows; k++)      /* operands have iterates */
+			find_surfaces(s, written->residual[k], NULL);
+		for (int k = 0; k < (written ? 0 : a->operands); k++)
 			find_surfaces(s, a->operand[k],
 				      a->kind == ATOM_PRODUCT || a->kind == ATOM_POWER ? full ? full : a
 				      : a->kind == ATOM_CHOOSE && k == 0               ? a
@@ -321,7 +326,7 @@ static int order_on(struct search *s, const struct surface *surface, const struc
 	struct judging j = { .s = s, .surface = surface, .form = form };
 	int worst = surface->abrupt ? JUMP : KINK, order = SURE;
 	*sure = false;
-	if (!silent_guard(write_sides, &j))
+	if (surface->implicit || !silent_guard(write_sides, &j))
 		return worst;
 	*sure = true;
 	if (is_number(j.sides.difference) || (j.sides.isolated && is_number(j.sides.isolated)))

@@ -201,16 +201,6 @@ static void find_extent(const struct step *step, struct expansion *x)
 
 /* ---- the whole ---- */
 
-/* What is solved for has one coefficient less than states have. */
-static int order_of_form(const struct sequencing *w, const struct form *form)
-{
-	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->step->model->equations.atoms));
-	bool solved = false;
-	for (const struct form_term **term = terms_within(form, seen); *term; term++)
-		solved = solved || ((*term)->basis.atom && (*term)->basis.atom->kind == ATOM_SOLUTION);
-	return w->x->order - solved;
-}
-
 /* Their arguments, and behind these columns what bounds a series but is no part of its error */
 static void place_unresolved(struct sequencing *w)
 {
@@ -298,7 +288,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 		make_forces(w);
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
-	rank_breakpoints(w->x);
+	rank_breakpoints(w);
 	w->x->unresolved = unresolved_of(model, &w->x->unresolved_functions, &w->x->looks);
 	w->x->crowded = model->truncation.adaptive ? crowded_frequency(system) : 0;
 	place_unresolved(w);

@@ -23,6 +23,8 @@ struct expansion {
 	bool time, choices;         /* t is read; formulas are chosen by it */
 	int functions;              /* what chooses formulas by the state: an event where one passes a breakpoint */
 	struct series_switching *function;
+	int kinks;                  /* of what equations are solved for by Newton's method */
+	struct kink *kink;
 	int columns, *column;       /* beside the states: sequences whose coefficients are kept for them, */
 	int *column_top;            /* up to these */
 	int measured;               /* the first of them: their last terms count as those of states do */

@@ -12,7 +12,9 @@
 /* Of a - b. The sequence of a switching function that is new is to be made. */
 struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b);
 int  column_of_sequence(struct expansion *x, int sequence, int top);  /* kept up to this coefficient */
-void rank_breakpoints(struct expansion *x);                  /* once all are there */
+void rank_breakpoints(struct sequencing *w);                 /* once all are there */
+/* That of the series, or one less where it reads what equations are solved for, which has so many coefficients */
+int  order_of_form(const struct sequencing *w, const struct form *form);
 int  breakpoint_rank(const struct expansion *x, int function, int breakpoint);    /* how many are below it */
 
 /* ---- recurrences.c: the coefficients as nodes of a tape ---- */

@@ -523,8 +523,13 @@ static int solution_sequences(struct sequencing *w, const struct atom *a)
 	for (int j = 0; j < n; j++)
 		new_sequence(w, (struct sequence){ .kind = SEQUENCE_SOLUTION, .state = NONE, .a = NONE, .b = NONE,
 						  .equations = e, .component = j });
+	ENLARGE(w->solution, (size_t)w->solutions + 1);  /* its own formulas may be chosen by it */
+	w->solution[w->solutions].atom = a;
+	w->solution[w->solutions++].first = e->first;
 	for (int j = 0; j < n && a->written; j++)
 		w->highest[a->written->highest[j].index] = e->first + j;
+	for (int i = 0; a->written && i < a->written->kinks; i++)
+		*MORE(w->x->kink, w->x->kinks) = a->written->kink[i];
 	for (int i = 0; i < n; i++)
 		e->right[i] = entry_sequence(w, system.f[i]);
 	for (int i = 0; i < n * n; i++)
@@ -541,11 +546,7 @@ static int solution_sequence(struct sequencing *w, const struct atom *a)
 	for (int i = 0; i < w->solutions; i++)
 		if (same_solution(w->solution[i].atom, a))
 			return w->solution[i].first + a->component;
-	int first = solution_sequences(w, a);
-	ENLARGE(w->solution, (size_t)w->solutions + 1);
-	w->solution[w->solutions].atom = a;
-	w->solution[w->solutions++].first = first;
-	return first + a->component;
+	return solution_sequences(w, a) + a->component;
 }
 
 static int sequence_of_atom(struct sequencing *w, const struct atom *atom)

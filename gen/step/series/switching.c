@@ -113,11 +113,21 @@ static struct division decided(const struct form *d)
 	return (struct division){ .function = NONE, .above = mpq_sgn(value) > 0 };
 }
 
+/* In the place of unknowns what they are solved as, for which all formulas are chosen */
+static const struct form *solved_kink(const struct expansion *x, const struct form *d)
+{
+	RATIONAL factor = ZERO;
+	for (int i = 0; i < x->kinks && !is_constant(d); i++)
+		if (is_form_multiple(d, x->kink[i].of, factor))
+			return form_scale(x->kink[i].solved, factor);
+	return d;
+}
+
 struct division divide_forms(struct sequencing *w, const struct form *a, const struct form *b)
 {
 	bool reversed;
 	RATIONAL factor = ZERO;
-	const struct form *d = difference_of(a, b, &reversed);
+	const struct form *d = solved_kink(w->x, difference_of(a, b, &reversed));
 	struct division division = is_constant(d) ? decided(d) : divide_form(w, d, factor);
 	division.above = division.above != reversed;
 	return division;
@@ -127,7 +137,7 @@ bool find_division(const struct expansion *x, const struct form *a, const struct
 {
 	bool reversed, known = true;
 	RATIONAL value = ZERO, factor = ZERO;
-	const struct form *d = difference_of(a, b, &reversed);
+	const struct form *d = solved_kink(x, difference_of(a, b, &reversed));
 	*division = decided(d);
 	if (!is_constant(d)) {
 		division->function = known_function(x, beside_constants(d, value), factor);
@@ -164,15 +174,25 @@ int column_of_sequence(struct expansion *x, int sequence, int top)
 	return states + i;
 }
 
-void rank_breakpoints(struct expansion *x)
+int order_of_form(const struct sequencing *w, const struct form *form)
 {
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(w->step->model->equations.atoms));
+	bool solved = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		solved = solved || ((*term)->basis.atom && (*term)->basis.atom->kind == ATOM_SOLUTION);
+	return w->x->order - solved;
+}
+
+void rank_breakpoints(struct sequencing *w)
+{
+	struct expansion *x = w->x;
 	for (int i = 0; i < x->functions; i++) {
 		struct series_switching *d = &x->function[i];
 		d->rank = ARRAY(int, d->breaks);
 		for (int k = 0; k < d->breaks; k++)
 			for (int j = 0; j < d->breaks; j++)
 				d->rank[k] += mpq_cmp(d->at[j], d->at[k]) < (j < k);
-		d->column = column_of_sequence(x, d->sequence, x->order);
+		d->column = column_of_sequence(x, d->sequence, order_of_form(w, d->form));
 	}
 	for (int i = 0; x->contacts && i < x->contacts->watches; i++) {
 		struct watch *watch = &x->contacts->watch[i];
