@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* enclosed MODEL.spec ...: what is known of piecewise-linear motions in 192 bits holds what is known in twice as many,
- * and is no wider than the motion makes it: widths that double at each event would be some 2^200 at the end. And the first
- * model, bilinear, against its closed form over thousands of periods. */
+ * and is no wider than the motion makes it: widths that double at each event would be some 2^200 at the end. And the
+ * first model, bilinear, against its closed form over thousands of periods. */
 #include "model/regions/regions.h"
 #include "step/certify/certify.h"
 #include "step/certify/inner.h"

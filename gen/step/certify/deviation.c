@@ -143,8 +143,9 @@ static int add_axis(int n, int axes, double *axis, double *v)
 	return axes + 1;
 }
 
-/* The axes of `next`: those of `now` as the map turns them, in their order, so that R' of map Q = Q' R' is triangular in
- * the same way each time and products of such grow as their diagonals do; then what else is not known, an entry each */
+/* The axes of `next`: those of `now` as the map turns them, in their order, so that R' of map Q = Q' R' is triangular
+ * in the same way each time and products of such grow as their diagonals do; then what else is not known, an entry
+ * each */
 static int turn_axes(struct deviation *d, int n, const double *image, const double *unknown)
 {
 	int axes = 0;
@@ -356,10 +357,12 @@ static bool jump_matrix(struct trajectory *t, const struct guard *guard, const s
 	const int n = t->n;
 	INTERVALS *old = enclosures(n, t->precision), *new = enclosures(n, t->precision);
 	REAL width = WITH_BITS(64);
-	SCRATCH double *jump = ARRAY(double, n), *wide = ARRAY(double, n), *row = ARRAY(double, n), *x = ARRAY(double, n);
+	SCRATCH double *jump = ARRAY(double, n), *wide = ARRAY(double, n);
+	SCRATCH double *row = ARRAY(double, n), *x = ARRAY(double, n);
 	const double speed = mpfi_get_d(slope), rates = stream_rates(before, after);
 	mpfi_diam_abs(width, slope);
-	bool known = !mpfi_has_zero(slope) && mpfr_get_d(width, MPFR_RNDU) < 1e-14 * fabs(speed) && off * rates < 1e-14;
+	const bool known = !mpfi_has_zero(slope) && mpfr_get_d(width, MPFR_RNDU) < 1e-14 * fabs(speed) &&
+			   off * rates < 1e-14;
 	stream_slope(before, t->x, old);
 	stream_slope(after, t->x, new);
 	for (int i = 0; i < n && known; i++) {

@@ -194,7 +194,8 @@ int trajectory_first(struct trajectory *t, int degree, mpq_srcptr tau, const str
 			terms = divide_by_power(t, degree, order, fresh, tau);
 		enum rise rise = first_rise(terms, (const mpfi_t *)t->piece.value, (const mpfi_t *)t->piece.slope, end,
 					    root);
-		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 && is_met_with(t, guard, *found)) {
+		if (rise == RISE_UNKNOWN && t->precision >= BITS_OF_ONE && result > 0 &&
+		    is_met_with(t, guard, *found)) {
 			if (guard->release)
 				*found = guard;
 			continue;
