@@ -61,7 +61,7 @@ const char *rewrite_of(const struct node *term, bool force)
 		return "a tunable param in place of the input is exact";
 	if (found.input)
 		return "an input that brings the whole term is exact";
-	if (force && found.coordinate && !found.several && !found.time)
+	if (force && found.coordinate && !found.several && !found.time && !holds_acceleration(term))
 		return format("straight pieces in its place, table(%s; ...), are exact",
 			      text_between(found.coordinate->start, found.coordinate->end));
 	return "";

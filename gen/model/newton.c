@@ -5,6 +5,7 @@
  * Where N has kinks, all iterates have the formulas that hold for the solution, from event to event. */
 #include "building.h"
 #include "math/math.h"
+#include "model/regions/regions.h"
 #include "state_mass.h"
 
 enum { ITERATES = 12 };                     /* from far away some halve their error before they double their digits */
@@ -361,4 +362,144 @@ struct linear_system newton_system(struct building *b, const struct node *node, 
 	for (int i = 0; i < written->kinks; i++)
 		all[i].solved = form_at(there, kink[i % kinks]);
 	return e;
+}
+
+/* ---- that kinks leave one solution ---- */
+
+/* M + N_u on either side of where g is 0: determinants whose signs are not alike say that u moves with f on one side,
+ * and against it on the other one. */
+struct turning {
+	struct building *b;
+	struct point *start;
+	const struct written_system *written;
+	const struct form *g;
+	const struct basis *moved;  /* the first of what is in g */
+	bool turns;
+};
+
+/* Unknowns where g, not linear in them: NULL, is so much at the start, small beside the rest of them, which are small
+ * themselves, with signs that each draw changes: so other kinks are on either side. */
+static struct point *point_near_kink(struct turning *w, const struct form *g, int draw, int side)
+{
+	const int n = w->written->rows;
+	struct fixing *fixing = ARRAY(struct fixing, n);
+	RATIONAL rest = ZERO, square = ZERO, part = ZERO;
+	const struct form plain = constant_terms(g);
+	int terms = plain.terms;
+	constant_value(&w->b->collector, &plain, rest);
+	mpq_set_si(part, side, 1);
+	mpq_div_2exp(part, part, 60);
+	mpq_sub(rest, rest, part);
+	w->moved = NULL;
+	for (int j = 0; j < n; j++) {
+		const struct basis *x = &w->written->highest[j];
+		const struct form_term *term = form_find(g, x);
+		fixing[j] = (struct fixing){ .symbol = w->b->collector.frame->coord[x->index], .coord = x->index,
+					     .order = x->order };
+		mpq_init(fixing[j].value);
+		mpq_set_si(fixing[j].value, (draw >> j % 4) % 2 ? j + 2 : -j - 2, 1u << 24);
+		mpq_canonicalize(fixing[j].value);
+		if (!term)
+			continue;
+		mpq_mul(part, term->factor, term->factor);
+		mpq_add(square, square, part);
+		mpq_mul(part, term->factor, fixing[j].value);
+		mpq_add(rest, rest, part);
+		w->moved = w->moved ? w->moved : x;
+		terms++;
+	}
+	if (!w->moved || terms < g->terms)
+		return NULL;
+	mpq_div(rest, rest, square);
+	for (int j = 0; j < n; j++) {
+		const struct form_term *term = form_find(g, &w->written->highest[j]);
+		if (!term)
+			continue;
+		mpq_mul(part, term->factor, rest);
+		mpq_sub(fixing[j].value, fixing[j].value, part);
+	}
+	return point_new(&w->b->collector, n, fixing);
+}
+
+/* Of the determinant there; -2: it is no number, as inputs are in it */
+static int sign_of_slope(const struct turning *w, const struct form *const *slope, struct point *there)
+{
+	const int n = w->written->rows;
+	RATIONALS *value = rationals((size_t)n);
+	INTEGERS *W = integers((size_t)n * (size_t)n);
+	INTEGER det = INTEGER_ZERO, scale = INTEGER_ZERO;
+	int column;
+	for (int i = 0; i < n; i++) {
+		mpz_set_ui(scale, 1);
+		for (int j = 0; j < n; j++) {
+			const struct form *entry = form_at(there, slope[i * n + j]);
+			if (!is_constant(entry))
+				return -2;
+			constant_value(&w->b->collector, entry, value[j]);
+			round_long(value[j]);
+			mpz_lcm(scale, scale, mpq_denref(value[j]));
+		}
+		for (int j = 0; j < n; j++) {
+			mpz_divexact(W[i * n + j], scale, mpq_denref(value[j]));
+			mpz_mul(W[i * n + j], W[i * n + j], mpq_numref(value[j]));
+		}
+	}
+	return bareiss(n, n, W, det, &column) ? mpz_sgn(det) : 0;
+}
+
+static void compare_sides(void *context)
+{
+	enum { DRAWS = 16 };
+	struct turning *w = context;
+	const int n = w->written->rows;
+	const struct form *g = form_at(w->start, w->g), **slope = ARRAY(const struct form *, n * n);
+	for (int i = 0; i < n * n; i++)
+		slope[i] = form_at(w->start, w->written->slope[i]);
+	for (int draw = 0; draw < (n > 1 ? DRAWS : 1) && !w->turns; draw++) {
+		struct point *below = point_near_kink(w, g, draw, -1), *above = point_near_kink(w, g, draw, 1);
+		if (!below || !above)
+			return;
+		const int a = sign_of_slope(w, slope, below), b = sign_of_slope(w, slope, above);
+		w->turns = a != b && a >= -1 && b >= -1;
+	}
+}
+
+static void look_at_surface(void *context, const struct form *g)
+{
+	struct turning *w = context;
+	w->g = g;
+	if (!w->turns)
+		w->turns = silent_guard(compare_sides, w) && w->turns;
+}
+
+static void look_at_decision(void *context, const struct form *d)
+{
+	visit_surfaces(d, look_at_surface, context);
+}
+
+static void report_turn(const struct turning *w, const struct node *node)
+{
+	const char *name = w->b->model->names.coord[w->moved->index];
+	const bool multiplier = w->moved->index >= w->b->model->n;
+	error(node->start, "less of it, or the formula of one side alone, leaves one solution",
+	      "'%s' turns the slope of the equation for %s%s: it may have no solution then, or two",
+	      text_between(node->start, node->end), name, multiplier ? "" : w->moved->order == 2 ? "''" : "'");
+}
+
+void check_kinks_at_start(struct building *b, struct point *start, const struct written_system *written)
+{
+	struct turning w = { .b = b, .start = start, .written = written };
+	bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	const bool equation = b->collector.equation;
+	for (int i = 0; i < written->rows; i++)
+		for (const struct form_term **term = terms_within(written->residual[i], seen); *term; term++) {
+			const struct atom *a = (*term)->basis.atom;
+			if (!a || !a->highest || a->kind != ATOM_CALL)
+				continue;
+			b->collector.equation = true;
+			visit_decisions(a, look_at_decision, &w);
+			b->collector.equation = equation;
+			if (w.turns)
+				report_turn(&w, a->node);
+		}
 }

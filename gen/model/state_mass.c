@@ -396,6 +396,12 @@ static void check_mass_of(void *context)
 	      highest->index >= model->n ? "" : highest->order == 2 ? "''" : "'");
 }
 
+static void check_kinks_of(void *context)
+{
+	const struct starting *work = context;
+	check_kinks_at_start(work->b, work->start, work->mass->system.written);
+}
+
 void check_mass_at_start(struct building *b)
 {
 	struct starting work = { .b = b, .start = point_at_state(b, b->model->initial, NULL) };
@@ -404,6 +410,8 @@ void check_mass_at_start(struct building *b)
 	for (int i = 0; i < b->full->masses && !diagnostics_errors(); i++) {
 		work.mass = &b->full->mass[i];
 		statement_guard(check_mass_of, &work);
+		if (work.mass->system.written->slope && !diagnostics_errors())
+			statement_guard(check_kinks_of, &work);
 	}
 }
 

@@ -49,6 +49,10 @@ struct nonlinear_terms *take_nonlinear_terms(struct building *b, const struct no
 /* Solved for u of M u + N(u) = f, where M u = f is `linear` */
 struct linear_system newton_system(struct building *b, const struct node *node, const struct linear_system *linear,
 				   struct nonlinear_terms *terms);
+/* Kinks that leave no solution at the start, or two, are errors. */
+struct point;
+struct written_system;
+void check_kinks_at_start(struct building *b, struct point *start, const struct written_system *written);
 
 /* ---- constraints.c ---- */
 

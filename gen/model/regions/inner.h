@@ -43,10 +43,6 @@ struct side {
 	struct form **known;        /* per atom that does */
 };
 
-/* What a decision on the sign of `d` makes of it: a product is decided by its factors of odd power. */
-void visit_surfaces(const struct form *d, void (*visit)(void *context, const struct form *g), void *context);
-/* All forms on whose signs an atom decides itself */
-void visit_decisions(const struct atom *a, void (*visit)(void *context, const struct form *d), void *context);
 struct form *form_on_side(struct side *s, const struct form *form);
 
 #endif

@@ -101,4 +101,11 @@ void place_region_loads(struct building *b);
 /* their systems; after the loads of all have their places */
 void build_regions(struct building *b);
 
+/* ---- sides.c: what decides ---- */
+
+/* What a decision on the sign of `d` makes of it: a product is decided by its factors of odd power. */
+void visit_surfaces(const struct form *d, void (*visit)(void *context, const struct form *g), void *context);
+/* All forms on whose signs an atom decides itself */
+void visit_decisions(const struct atom *a, void (*visit)(void *context, const struct form *d), void *context);
+
 #endif
