@@ -20,7 +20,7 @@ enum {
 	LISTED_AT_ONCE = 12,        /* of impacts at one instant, as in runtime/chain.h */
 	BESIDE = 36,                /* the second start is off by 2^-36; in float */
 	GROWTH = 8,                 /* and grows by no more than that */
-	MOST_LOST = 20              /* bits that enclosures may lose: each bounce of several loses some */
+	MOST_LOST = 30              /* bits that enclosures may lose: each bounce of several loses some */
 };
 
 /* 1, -3/4, 5/8, -9/16, ...: no two alike, none of them rounded */
