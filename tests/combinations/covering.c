@@ -17,7 +17,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST = 55, MOST_REFUSALS = 700, LINE = 1000, ROW = 10, PAGE = 118 };
+enum { MOST = 56, MOST_REFUSALS = 700, LINE = 1000, ROW = 10, PAGE = 118 };
 
 /* ---- gen/model/capability.def ---- */
 
@@ -499,7 +499,7 @@ static void print_options(FILE *to)
 	if (has("loads") && !scheme && !has("friction") && !has("impact"))
 		fputs(" --scheme etdrk4", to);
 	const bool kinks = has("kinked") || (has("loads") && has("change"));
-	const bool curves = kinks || has("smooth") || has("constraint") || expands() || moves();
+	const bool curves = kinks || has("smooth") || has("constraint") || has("implicit") || expands() || moves();
 	fprintf(to, "\n# class: %s\n",
 		has("friction")                      ? "sticking"
 			: kinks                      ? "kinked"
@@ -515,7 +515,7 @@ static void print_options(FILE *to)
 	fputs(has("impact") ? "# impact: 0.02 0.8\n" : "", to);
 	if (has("tunable"))
 		fputs(has("smooth") || has("constraint") || has("kinked") || has("loads") || has("piecewise") ||
-				has("friction") ||
+				has("friction") || has("implicit") ||
 				has("impact") ||
 		      expands() || moves() || has("delayed")
 			? "# retune: k=17.5\n" : "# retune: k=17.5 step=0.0125\n", to);
@@ -546,7 +546,8 @@ static void write_chain(FILE *to, int n)
 static void write_need(FILE *to, const char *output)
 {
 	const bool measured = has("smooth") || has("constraint") || has("kinked") || has("piecewise") ||
-			      has("friction") || has("impact") || has("loads") || expands() || moves();
+			      has("implicit") || has("friction") || has("impact") || has("loads") || expands() ||
+			      moves();
 	fprintf(to, "need %s within %s until 0.5", output,
 		measured && has_scheme() && !has("taylor") && !has("radau") ? "5 %"
 			: has("float") ? has("modal") ? "5e-3" : "1e-4" : measured ? "1e-6" : "1e-9");
@@ -572,6 +573,7 @@ static void write_spec(FILE *to)
 	fputs("coord a, b\n", to);
 	fputs(has("sensitivity") ? "sensitivity k, a\n" : "", to);
 	fputs(has("constraint") ? "coord c, g\n" : "", to);
+	fputs(has("implicit") ? "coord w\n" : "", to);
 	fputs(has("first") ? "coord z\n" : "", to);
 	fputs(has("reduce") ? "coord unseen\n" : "", to);
 	if (vector)
@@ -615,6 +617,7 @@ static void write_spec(FILE *to)
 	fputs("0\n", to);
 	fputs(has("constraint") ? "c'' + 4*c = 0\n2*g'' + k*g = 0\nspring 2 between b, c\n"
 				  "constraint rod: c^2 + g^2 = 1\n" : "", to);
+	fputs(has("implicit") ? "w'' + 0.05*w''^3 + 4*w = 0\nspring 2 between b, w\n" : "", to);
 	fputs(has("first") ? "0.5*z' + 2*z = a - b\n" : "", to);
 	fputs(has("reduce") ? "unseen'' + 5*unseen = 0\n" : "", to);
 	if (vector) {
