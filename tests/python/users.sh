@@ -248,7 +248,7 @@ if merging; then
 			m = plgen_model("drive.spec", "k", 800);
 			y = m.run(2 * ones(400, 1));
 			w = sqrt(800 * (50 + 100 / 3));
-			printf("%g\n", max(abs(y(:, 1) / 1000 - 100 / w^2 * (1 - cos(w * m.t(:))))));' >log 2>complaint &&
+			printf("%g\n", max(abs(y(:, 1) / 1000 - 100 / w^2 * (1 - cos(w * m.t(:))))));' >log 2>said &&
 			awk 'END { exit !($1 < 1e-12) }' log
 		result $? "drive in Octave: the twist: $(tail -n 1 log)"
 	else
