@@ -17,10 +17,15 @@ void refuse_jumps_of_solved(const struct building *b, const struct form *form)
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
 		const struct atom *a = (*term)->basis.atom;
-		if (a && a->highest && (a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN)))
-			error(a->node->start, "abs, min, max, clip, deadzone and table have none",
-			      "'%s' jumps with what equations are solved for: they may have no solution then, or two",
+		if (!a || !a->highest || !(a->kind == ATOM_COMPARE || (a->kind == ATOM_CALL && a->function == FN_SGN)))
+			continue;
+		if (b->model->spec->joined.columns > 0) /* a kink's own derivative jumps */
+			error(a->node->start, "differences of runs have them",
+			      "derivatives through a kink in what equations are solved for, by '%s', are not built",
 			      text_between(a->node->start, a->node->end));
+		error(a->node->start, "abs, min, max, clip, deadzone and table have none",
+		      "'%s' jumps with what equations are solved for: they may have no solution then, or two",
+		      text_between(a->node->start, a->node->end));
 	}
 }
 
