@@ -19,24 +19,20 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_SWEEPS = 1000, LAST = 6 };
 
 /* CALM: of the fastest impact, what is slower is over.  BRIEF: of h, what is over by then is at rest.  SPAN: of h,
  * impacts within that follow each other in no time to speak of.  DEEP: so many times what rounding may have done is no
- * rounding any more.  TINY: below it all is 0, as what impacts have halved for ever without a force: sweeps that
- * leave 7/8 of a speed take it there before there are too many. */
+ * rounding any more. */
 #ifdef REAL_IS_FLOAT
 #define CALM_OF_REAL 0x1p-20f
 #define BRIEF_OF_REAL PL_BRIEFF
 #define SPAN_OF_REAL 0x1p-8f
-#define TINY_OF_REAL 0x1p-96f
 #else
 #define CALM_OF_REAL 0x1p-48
 #define BRIEF_OF_REAL PL_BRIEF
 #define SPAN_OF_REAL 0x1p-10
-#define TINY_OF_REAL 0x1p-192
 #endif
 #ifndef CALM /* the generator has its own */
 #define CALM CALM_OF_REAL
 #define BRIEF BRIEF_OF_REAL
 #define SPAN SPAN_OF_REAL
-#define TINY TINY_OF_REAL
 #endif
 #ifndef TOGETHER
 #define TOGETHER BRIEF
