@@ -110,8 +110,8 @@ static void widen(size_t j)
 		look(j, now, below);
 		now[k] = here;
 		for (i = 0; i < M_OUTPUTS; i++) {
-			const real change = (real)fmin(fabs((double)(above[i] - at[i])), fabs((double)(at[i] - below[i])));
-			steepest[j][i][k] = fmax(steepest[j][i][k], (double)(change / rise));
+			const double up = fabs((double)(above[i] - at[i])), down = fabs((double)(at[i] - below[i]));
+			steepest[j][i][k] = fmax(steepest[j][i][k], fmin(up, down) / (double)rise);
 		}
 	}
 }
@@ -175,7 +175,8 @@ static void judge(const m_instances *b)
 		for (i = 0; i < M_STATES; i++)
 			compare("a state", j, (double)together[i], (double)single[i], widest[j][i]);
 		for (i = 0; i < M_OUTPUTS; i++)
-			compare("a peak", j, (double)peak[(size_t)i * b->count + j], (double)greatest[j][i], size_of(j, i));
+			compare("a peak", j, (double)peak[(size_t)i * b->count + j], (double)greatest[j][i],
+					size_of(j, i));
 	}
 	if (m_time(&b->shared) != m_time(&alone[0]))
 		compare("the time", 0, (double)m_time(&b->shared), (double)m_time(&alone[0]), 1e-300);
