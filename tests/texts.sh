@@ -78,7 +78,7 @@ END
 
 sums() {
 	if [ -x "$1" ]; then
-		plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1")
+		plgen=$(realpath "$1")
 		mkdir -p "$work/runs"
 		xargs -d '\n' -P "$(nproc)" -I '{}' sh "$work/one.sh" "$plgen" '{}' "$work/runs" <"$work/commands" |
 			LC_ALL=C sort -k 2 >"$2"

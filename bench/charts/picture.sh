@@ -4,8 +4,7 @@
 # FOLDER: OUTDIR/NAME.svg and .png, or more of that name; narrow: for a screen of 400 pixels, NAME_narrow.svg alone.
 # picture.sh --list FOLDER: NAME, and `NAME narrow` where there is that, of the pictures whose tables are there.
 set -e
-here=$(dirname "$0")
-case $here in /*) ;; *) here=$PWD/$here ;; esac
+here=$(dirname "$(realpath "$0")")
 if [ "$1" = --list ]; then
 	sed -n 's/^=== \([^:]*\): \(.*\)/\1 \2/p' "$here/pictures.gp" "$here/maps.gp" | while read -r name tables; do
 		for table in ${tables%narrow}; do

@@ -5,13 +5,10 @@
 # 2e-13 of the largest of their column, and beside them the outputs of a run without derivatives, to the last bit;
 # those of derivatives_nonlinear.cases against differences of runs, with SEEDS all of them and at three tolerances.
 set -u
-absolute() {
-	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
-}
-PLGEN=$(absolute "$1")
-plrun=$(absolute "$2")
-judge=$(absolute "$3")
-root=$(absolute "$4")
+PLGEN=$(realpath "$1")
+plrun=$(realpath "$2")
+judge=$(realpath "$3")
+root=$(realpath "$4")
 seeds=${5:-16}
 export PLGEN
 . "$root/tests/tap.sh"

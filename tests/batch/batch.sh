@@ -7,10 +7,8 @@
 #
 # LONG=1: of more models, as vectors of what this machine has too, and by clang; there products may be contracted.
 set -u
-plgen=$1
-root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 here=$root/tests/batch
 specs=$root
 . "$root/tests/run_cc.sh"

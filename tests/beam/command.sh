@@ -4,10 +4,7 @@
 #
 #     command.sh BEAM_MATRICES
 set -u
-case $1 in
-    /*) program=$1 ;;
-    *) program=$PWD/$1 ;;
-esac
+program=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 
 # refuses STATUS WORD OPTIONS...: with this status, a message that has the word, and no file

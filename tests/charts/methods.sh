@@ -2,13 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # methods.sh PLGEN METHODS ROOT: the generated code that the program methods looks at, then that program.
 set -e
-absolute() {
-    case $1 in
-        /*) echo "$1" ;;
-        *) echo "$PWD/$1" ;;
-    esac
-}
-plgen=$(absolute "$1") program=$(absolute "$2") root=$3
+plgen=$(realpath "$1") program=$(realpath "$2") root=$3
 work=$(mktemp -d "${TMPDIR:-/tmp}/methods.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM

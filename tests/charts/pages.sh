@@ -3,8 +3,7 @@
 # pages.sh ROOT: what readers see of the charts: the pages and pictures kept in doc/charts, and some drawn of small
 # tables. Nothing is measured. As TAP.
 set -u
-root=$1
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+root=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 here=$root/tests/charts
 charts=$root/bench/charts

@@ -4,13 +4,7 @@
 # histories or those of the quick run, held by the program scales. Not by a quick run: vanderpol_stiffer, of which it
 # takes longer to know what is true than of all others.
 set -e
-absolute() {
-    case $1 in
-        /*) echo "$1" ;;
-        *) echo "$PWD/$1" ;;
-    esac
-}
-build=$(absolute "$1") program=$(absolute "$2") root=$3 quick=${4:-}
+build=$(realpath "$1") program=$(realpath "$2") root=$3 quick=${4:-}
 charts=$build/bench/charts
 work=$(mktemp -d "${TMPDIR:-/tmp}/scales.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT

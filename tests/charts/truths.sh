@@ -3,13 +3,7 @@
 # truths.sh PLGEN PROGRAM ROOT: the generated code of every smooth model of the charts, then that program (truths,
 # peers) on it.
 set -e
-absolute() {
-    case $1 in
-        /*) echo "$1" ;;
-        *) echo "$PWD/$1" ;;
-    esac
-}
-plgen=$(absolute "$1") program=$(absolute "$2") root=$3
+plgen=$(realpath "$1") program=$(realpath "$2") root=$3
 work=$(mktemp -d "${TMPDIR:-/tmp}/truths.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM

@@ -7,16 +7,10 @@
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
 set -u
-absolute() {
-	case $1 in
-		/*) echo "$1" ;;
-		*) echo "$PWD/$1" ;;
-	esac
-}
-plgen=$(absolute "$1")
-covering=$(absolute "$2")
-folder=$(dirname "$(absolute "$3")")
-source=$(absolute "$4")
+plgen=$(realpath "$1")
+covering=$(realpath "$2")
+folder=$(dirname "$(realpath "$3")")
+source=$(realpath "$4")
 list=$source/tests/combinations/capabilities.list
 . "$source/tests/tap.sh"
 . "$source/tests/fuzz/batch.sh"

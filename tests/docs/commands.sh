@@ -18,13 +18,10 @@
 #
 # A picture in letters is named in `pictures`. Any other block fails.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-plrun=$3
-board=$4
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
-case $board in /*) ;; *) board=$PWD/$board ;; esac
+plrun=$(realpath "$3")
+board=$(realpath "$4")
 . "${0%/*}/../sparing.sh"
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"

@@ -8,8 +8,7 @@
 # Not looked at: what programs write (doc/charts, doc/gallery, doc/combinations.md, *.csv) or read as data
 # (*.list, *.mtx, *.txt of tests), and cases of tests/errors and tests/fuzz, where a line may be what is tested.
 set -u
-root=$1
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+root=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 
 # Those lines, as FILE:LINE: COLUMNS; a character is a byte that continues no other

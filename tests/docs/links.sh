@@ -5,10 +5,8 @@
 #
 #     links.sh SOURCE_ROOT BUILD_ROOT
 set -u
-root=$1
-build=$2
-case $root in /*) ;; *) root=$PWD/$root ;; esac
-case $build in /*) ;; *) build=$PWD/$build ;; esac
+root=$(realpath "$1")
+build=$(realpath "$2")
 . "${0%/*}/../tap.sh"
 
 # The anchors of a page: of headings as GitHub makes them, of HTML the ids

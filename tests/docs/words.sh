@@ -9,8 +9,7 @@
 # which have no ordinary meaning that is needed here, stand nowhere: neither in the code and its comments nor on the
 # pages. Behind a word stands what is written instead, and files (patterns of paths, from `except` on) that may have it.
 set -u
-root=$1
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+root=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 
 cat >identifiers.list <<'END'

@@ -8,9 +8,8 @@
 # Compiled to be run, and with MERGE=1 for warnings: by gcc and clang as C99, g++ and clang++ as C++17, all four for the
 # first model, for the others one of them in turn, with LONG=1 all; what is not installed is skipped.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "${0%/*}/../tap.sh"
 . "${0%/*}/../cases.sh"

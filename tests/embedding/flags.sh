@@ -8,9 +8,8 @@
 # The compilers are gcc, g++, clang, clang++ and arm-none-eabi-gcc; what is not installed is skipped.  gcc sees every
 # file, each other compiler every second by turns, with LONG=1 in the environment all.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 
 "$plgen" "$root/models/sdcsf.spec" >double.c || exit 99

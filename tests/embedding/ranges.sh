@@ -5,9 +5,8 @@
 #
 #     ranges.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/run_cc.sh"
 . "${0%/*}/../tap.sh"
 

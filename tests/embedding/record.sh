@@ -6,9 +6,8 @@
 #
 #     record.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 

@@ -10,9 +10,8 @@
 # clang's C++, with LONG=1 all; what is not installed is skipped.  gcc's C is of every name, any other of every third,
 # each of others, with LONG=1 of all.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../tap.sh"

@@ -9,19 +9,11 @@
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-solutions=$3
+solutions=$(realpath "$3")
 shift 3
 models=$*
-case $plgen in
-    /*) ;;
-    *) plgen=$PWD/$plgen ;;
-esac
-case $solutions in
-    /*) ;;
-    *) solutions=$PWD/$solutions ;;
-esac
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"

@@ -11,15 +11,9 @@
 set -u
 part=$1
 shift
-absolute() {
-    case $1 in
-        /*) echo "$1" ;;
-        *) echo "$PWD/$1" ;;
-    esac
-}
-plgen=$(absolute "$1")
-inputs=$(absolute "$2")
-root=$(absolute "$3")
+plgen=$(realpath "$1")
+inputs=$(realpath "$2")
+root=$(realpath "$3")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"

@@ -5,10 +5,7 @@
 #
 #     oscillators.sh PLGEN SOURCE_ROOT COUNT
 set -u
-case $1 in
-    /*) plgen=$1 ;;
-    *) plgen=$PWD/$1 ;;
-esac
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
 many=$3
 . "${0%/*}/../run_cc.sh"

@@ -3,14 +3,8 @@
 # rows.sh PLGEN SOURCE_ROOT: NAME_run in blocks of rows against NAME_step, for every number of steps from none to three
 # blocks and one: models and forms of the step in double and float, as two programs.
 set -u
-absolute() {
-    case $1 in
-        /*) echo "$1" ;;
-        *) echo "$PWD/$1" ;;
-    esac
-}
-plgen=$(absolute "$1")
-root=$(absolute "$2")
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 . "${0%/*}/../cases.sh"

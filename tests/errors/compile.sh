@@ -5,14 +5,11 @@
 # compiles without a warning, whatever the names in its spec are. Those about names; with MERGE=1 in the environment
 # every second of the others but those of dear.list too, with LONG=1 all.
 set -u
-plgen=$1
-cases=$2
-runtime=$3
+plgen=$(realpath "$1")
+cases=$(realpath "$2")
+runtime=$(realpath "$3")
 shift 3
 dear=$(cd "${0%/*}" && pwd)/dear.list
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $cases in /*) ;; *) cases=$PWD/$cases ;; esac
-case $runtime in /*) ;; *) runtime=$PWD/$runtime ;; esac
 LC_ALL=C
 export LC_ALL
 work=$(mktemp -d) || exit 1

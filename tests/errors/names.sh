@@ -5,11 +5,9 @@
 # What generated code names after a model is read from models of every kind, and what the library has from its headers;
 # so a new suffix is looked at too.
 set -u
-plgen=$1
-runtime=$2
+plgen=$(realpath "$1")
+runtime=$(realpath "$2")
 shift 2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $runtime in /*) ;; *) runtime=$PWD/$runtime ;; esac
 LC_ALL=C
 export LC_ALL
 work=$(mktemp -d) || exit 1

@@ -3,11 +3,9 @@
 #
 # publish.sh PLGEN SPEC: what reaches files and standard output, and what is left when it cannot. SPEC is a good model.
 set -u
-plgen=$1
-spec=$2
+plgen=$(realpath "$1")
+spec=$(realpath "$2")
 runtime=$(cd "${0%/*}/../../runtime" && pwd) || exit 1
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $spec in /*) ;; *) spec=$PWD/$spec ;; esac
 LC_ALL=C
 export LC_ALL
 work=$(mktemp -d) || exit 1

@@ -5,12 +5,10 @@
 # (LIBRARY: fail.c). It exits 1 with a message, leaves the header and the C of before or of now, never a part of one,
 # and no temporaries.
 set -u
-plgen=$1
-library=$2
+plgen=$(realpath "$1")
+library=$(realpath "$2")
 each=$3
 shift 3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $library in /*) ;; *) library=$PWD/$library ;; esac
 here=$PWD
 LC_ALL=C
 export LC_ALL

@@ -8,7 +8,7 @@ firmware=$(cd "${0%/*}" && pwd)
 optimize_less "$1"
 board "$1"
 root=$2
-case $3 in /*) out=$3 ;; *) out=$PWD/$3 ;; esac
+out=$(realpath "$3")
 rm -f "$out"
 if ! boards_installed; then
     ar rcD "$out"

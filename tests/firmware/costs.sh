@@ -5,7 +5,7 @@
 # exactly. What the banner says, of the step's program alone, is the same within a factor of 1.06 (=) where a step is
 # straight-line code, of 1.7 (~) where it is an event-free step, and nothing is compared (-) where steps share a series.
 set -u
-case $1 in /*) plgen=$1 ;; *) plgen=$PWD/$1 ;; esac
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
 firmware=$root/tests/firmware
 . "$root/tests/tap.sh"

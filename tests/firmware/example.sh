@@ -7,13 +7,10 @@
 #
 # The runtime is compiled by the Makefile as it stands; elsewhere it is that of the other tests, M3 with that of M0.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-m4f=$3
-m0=$4
-case $m4f in /*) ;; *) m4f=$PWD/$m4f ;; esac
-case $m0 in /*) ;; *) m0=$PWD/$m0 ;; esac
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+m4f=$(realpath "$3")
+m0=$(realpath "$4")
 firmware=$root/tests/firmware
 . "$firmware/boards.sh"
 if ! boards_installed; then

@@ -7,7 +7,7 @@
 set -u
 table=
 [ "$1" != --table ] || { table=1; shift; }
-case $1 in /*) plgen=$1 ;; *) plgen=$PWD/$1 ;; esac
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
 firmware=$root/tests/firmware
 . "$root/tests/tap.sh"

@@ -7,9 +7,8 @@
 # LONG=1 in the environment: FMUs are compiled as an importer would, and looked at by both compilers; without it those
 # of `plant` and of floats not optimised, and by gcc and clang by turns, the others only to be run.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 standard=${FMI_DIR:-$root/../shared/fmi}
 standard=$(cd "$standard" 2>/dev/null && pwd)
 . "$root/tests/run_cc.sh"

@@ -8,13 +8,10 @@
 # The last two are what variants.sh makes, beside their headers: every linear model in every form.  The compilers are
 # those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-double=$3
-float=$4
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $double in /*) ;; *) double=$PWD/$double ;; esac
-case $float in /*) ;; *) float=$PWD/$float ;; esac
+double=$(realpath "$3")
+float=$(realpath "$4")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 remainder='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'

@@ -5,11 +5,9 @@
 #
 #     loads.sh PLGEN SOURCE_ROOT LOAD_SPECS [FIRST LAST [SEED]]
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
-specs=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $specs in /*) ;; *) specs=$PWD/$specs ;; esac
+specs=$(realpath "$3")
 first=${4-1}
 last=${5-3}
 seed=${6-1}

@@ -7,11 +7,9 @@
 # As emitted it is below 60 units in the last place, of stop, which is followed through five crossings, below 100; with
 # the leading digit of one constant wrong it is above 300.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-cases=$3
-case $cases in /*) ;; *) cases=$PWD/$cases ;; esac
+cases=$(realpath "$3")
 here=$(cd "${0%/*}" && pwd) || exit 99
 . "$here/../run_cc.sh"
 . "$here/../tap.sh"

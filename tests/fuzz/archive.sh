@@ -5,10 +5,7 @@
 set -eu
 source=$1
 cc=$2
-case $3 in
-	/*) out=$3 ;;
-	*) out=$PWD/$3 ;;
-esac
+out=$(realpath "$3")
 runtime=${4:-}
 case $runtime in
 	/* | '') ;;

@@ -8,23 +8,17 @@
 # all have sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only
 # with a message of refusals.list.
 set -u
-absolute() {
-	case $1 in
-		/*) echo "$1" ;;
-		*) echo "$PWD/$1" ;;
-	esac
-}
-sanitized=$(absolute "$1")
-grammar=$(absolute "$2")
-folder=$(dirname "$(absolute "$3")")
-source=$(absolute "$4")
+sanitized=$(realpath "$1")
+grammar=$(realpath "$2")
+folder=$(dirname "$(realpath "$3")")
+source=$(realpath "$4")
 first=$5
 stride=${STRIDE:-1}
 past=$((first + $6 * stride))
 corpus=${7:-}
-[ -z "$corpus" ] || corpus=$(absolute "$corpus")
+[ -z "$corpus" ] || corpus=$(realpath "$corpus")
 keep=${KEEP:-}
-[ -z "$keep" ] || keep=$(absolute "$keep")
+[ -z "$keep" ] || keep=$(realpath "$keep")
 . "$source/tests/tap.sh"
 . "$source/tests/fuzz/batch.sh"
 merging || every=3

@@ -20,12 +20,9 @@
 #
 #     jury.sh PLGEN PLRUN SOURCE --page       prints doc/jury.md
 set -u
-absolute() {
-	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
-}
-PLGEN=$(absolute "$1")
-plrun=$(absolute "$2")
-root=$(absolute "$3")
+PLGEN=$(realpath "$1")
+plrun=$(realpath "$2")
+root=$(realpath "$3")
 mode=${4-}
 export PLGEN
 . "$root/tests/tap.sh"

@@ -4,7 +4,7 @@
 # of them does alone, bit for bit where the block is done alike; modes step as states do; where they cannot they stand
 # aside.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
+plgen=$(realpath "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 library=$PLRT
 . "$root/tests/run_cc.sh"

@@ -4,9 +4,9 @@
 # sweeps of models with clearances. Numbers are LOOK's and SWEEPS'; pictures are scripts, which a gnuplot of the test's
 # own hands on as they are.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
-look=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") || exit 99
-sweeps=$(cd "$(dirname "$3")" && pwd)/$(basename "$3") || exit 99
+plgen=$(realpath "$1") || exit 99
+look=$(realpath "$2") || exit 99
+sweeps=$(realpath "$3") || exit 99
 root=$(cd "$4" && pwd) || exit 99
 here=$root/tests/look
 . "$root/tests/tap.sh"

@@ -2,12 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # mechanisms.sh PLGEN PLRUN SOURCE: mechanisms.cases, as TAP: the values that plrun prints at a time.
 set -u
-absolute() {
-	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
-}
-PLGEN=$(absolute "$1")
-plrun=$(absolute "$2")
-root=$(absolute "$3")
+PLGEN=$(realpath "$1")
+plrun=$(realpath "$2")
+root=$(realpath "$3")
 export PLGEN
 . "$root/tests/tap.sh"
 . "$root/tests/run_cc.sh"

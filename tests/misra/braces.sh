@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # braces.sh PLGEN SOURCE_ROOT: in generated code and in the runtime every body of an if, an else or a loop has braces.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/tap.sh"
 . "$root/tests/cases.sh"
 look="$root/tests/misra/braces.py"

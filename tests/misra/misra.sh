@@ -8,10 +8,9 @@
 #     misra.sh PLGEN SOURCE_ROOT --table      prints what that table says, a rule a line: rule, in the models, in the
 #                                             runtime
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
 mode=${3-}
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/tap.sh"
 . "$root/tests/cases.sh"
 if ! command -v cppcheck >/dev/null 2>&1; then

@@ -4,12 +4,9 @@
 #
 #     modes.sh PLGEN SOURCE_ROOT DROPPED
 set -u
-plgen=$1
-root=$2
-dropped=$3
-case $dropped in /*) ;; *) dropped=$PWD/$dropped ;; esac
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
+dropped=$(realpath "$3")
 here=$root/tests/modes
 . "$root/tests/tap.sh"
 . "$root/tests/run_cc.sh"

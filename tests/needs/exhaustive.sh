@@ -3,9 +3,8 @@
 # What is chosen costs at most 1.1 times the cheapest over every set of modes, with and without their static gain, each
 # with every form and precision: driven.spec, and random models of up to six masses.
 # exhaustive.sh PLGEN HERE [SEED...]
-plgen=$1 here=$2
+plgen=$(realpath "$1") here=$2
 shift 2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

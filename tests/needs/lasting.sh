@@ -3,8 +3,7 @@
 # What is certified of a run that is not walked through: lasting.spec and the same with one mode, in float; and
 # as many as are chosen: without what the other one does at once, which the load would miss at every sample.
 # lasting.sh PLGEN HERE RUNTIME; PLRT in the environment: the runtime as an archive
-plgen=$1 here=$2 runtime=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+plgen=$(realpath "$1") here=$2 runtime=$3
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

@@ -9,8 +9,7 @@
 # needs.sh PLGEN HERE RUNTIME drivetrain: models/drivetrain.spec, a scene of parts, with a need
 # needs.sh PLGEN HERE RUNTIME beam: the beam of beam.awk, of which at most 6 modes are kept and a third of the cost
 # PLRT in the environment: the runtime as an archive.
-plgen=$1 here=$2 runtime=$3 first=$4 last=${5:-}
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+plgen=$(realpath "$1") here=$2 runtime=$3 first=$4 last=${5:-}
 models=$(cd "$here/../../models" && pwd) || exit 1
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # rows.sh PLGEN: where needs choose the step, the rows of --solution are as far apart as the steps of the C, which its
 # header says; t of row k is k times that.
-plgen=$1
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+plgen=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 
 # apart NAME EQUATION STATEMENT OPTION...

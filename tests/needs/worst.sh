@@ -3,8 +3,7 @@
 # What is certified for any input within a bound is attained by one: driven.spec, held and as a ramp. Of one mode the
 # largest value is known in closed form: gain.spec.
 # worst.sh PLGEN HERE RUNTIME; PLRT in the environment: the runtime as an archive
-plgen=$1 here=$2 runtime=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
+plgen=$(realpath "$1") here=$2 runtime=$3
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

@@ -4,8 +4,8 @@
 # the model stays text; what stands in the way is reported. With MERGE=1 ten models, and a page in a browser without a
 # network; with FIREFOX=1 too in that one.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
-plrun=$(cd "$(dirname "$2")" && pwd)/$(basename "$2") || exit 99
+plgen=$(realpath "$1") || exit 99
+plrun=$(realpath "$2") || exit 99
 root=$(cd "$3" && pwd) || exit 99
 . "$root/tests/tap.sh"
 XDG_CACHE_HOME=$work/cache

@@ -5,10 +5,8 @@
 #
 #     parts.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
-root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 here=$root/tests/parts
 . "$root/tests/tap.sh"
 awk -f "$root/tests/cases.awk" "$here/specs.cases" >flats && cp "$here/stiffness.mtx" . || exit 99

@@ -3,11 +3,9 @@
 # shared.sh PLGEN PLRUN SOURCE_ROOT: the parts of share/parts, found from anywhere, against the standards' own formulas:
 # roads by the power of their octaves, shocks by their change of velocity, sweeps by their cycles, a record by itself.
 set -u
-plgen=$1
-plrun=$2
+plgen=$(realpath "$1")
+plrun=$(realpath "$2")
 root=$(cd "$3" && pwd) || exit 99
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
 . "$root/tests/tap.sh"
 PLGEN_RUNTIME=$root/runtime
 XDG_CACHE_HOME=$work/cache

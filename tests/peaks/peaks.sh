@@ -4,10 +4,8 @@
 #
 #     peaks.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
-root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 here=$root/tests/peaks
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"

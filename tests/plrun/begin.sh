@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Sourced by the scripts of this folder, whose arguments are PLRUN PLGEN SOURCE_ROOT: paths, and a cache of their own.
 set -u
-absolute() {
-	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
-}
-plrun=$(absolute "$1")
-PLGEN=$(absolute "$2")
-root=$(absolute "$3")
+plrun=$(realpath "$1")
+PLGEN=$(realpath "$2")
+root=$(realpath "$3")
 export PLGEN
 . "$root/tests/tap.sh"
 XDG_CACHE_HOME=$work/cache

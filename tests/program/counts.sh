@@ -5,9 +5,8 @@
 #
 #     counts.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "${0%/*}/../tap.sh"
 
 limits=$root/bench/limits

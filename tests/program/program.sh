@@ -4,7 +4,7 @@
 # last word is the spec, from the root of the sources; what is said stands behind it. And the assignments of linear
 # steps, done as they are printed, come to where the closed form is.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
+plgen=$(realpath "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 only=${3:-}
 . "$root/tests/tap.sh"

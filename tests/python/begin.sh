@@ -2,11 +2,8 @@
 # Sourced by the scripts of this folder, whose arguments are PLGEN SOURCE_ROOT: paths, a cache of their own with a blank
 # in it, and the rows that plmain.c writes of some models, which a binding has to have bit for bit.
 set -u
-absolute() {
-	case $1 in /*) echo "$1" ;; *) echo "$PWD/$1" ;; esac
-}
-PLGEN=$(absolute "$1")
-root=$(absolute "$2")
+PLGEN=$(realpath "$1")
+root=$(realpath "$2")
 . "$root/tests/tap.sh"
 XDG_CACHE_HOME="$work/a cache"
 PLGEN_RUNTIME=$root/runtime

@@ -6,11 +6,9 @@
 #
 #     small.sh PLGEN SOURCE_ROOT PLRUN
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-plrun=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $plrun in /*) ;; *) plrun=$PWD/$plrun ;; esac
+plrun=$(realpath "$3")
 . "${0%/*}/../tap.sh"
 . "$root/tests/run_cc.sh"
 

@@ -4,7 +4,7 @@
 # functions read, and nothing else: a load that accelerates has a part in the slope of a velocity, and none in that of a
 # position. As TAP.
 set -u
-case $1 in /*) plgen=$1 ;; *) plgen=$PWD/$1 ;; esac
+plgen=$(realpath "$1")
 . "${0%/*}/../tap.sh"
 
 # loads_of WORDS NAME EXPRESSION EXPECTED: how many loads the look of a model evaluates that switches where that is 0

@@ -3,7 +3,7 @@
 # report.sh PLGEN ROOT: poles, natural frequencies and damping ratios as plgen tells them, of a model whose modes are
 # known before.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
+plgen=$(realpath "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
 here=$root/tests/report
 . "$root/tests/tap.sh"

@@ -5,11 +5,9 @@
 # generator has inside, whose bits `compilers` holds against others. With LONG=1 in the environment all are, optimised,
 # and all in float too.
 set -u
-plgen=$1
-inside=$2
+plgen=$(realpath "$1")
+inside=$(realpath "$2")
 root=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $inside in /*) ;; *) inside=$PWD/$inside ;; esac
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
 runtime_archive "$root/runtime"

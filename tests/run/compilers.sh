@@ -6,10 +6,8 @@
 #
 #     compilers.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
-root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 . "$root/tests/tap.sh"
 . "$root/tests/same/run.sh"
 runtime_archive "$root/runtime"

@@ -4,11 +4,9 @@
 # compiled and run; CVODE, on equations by hand, finds every sample within the need, from the spec's start and one of
 # its neighbours by turns, with LONG=1 from all of them. With MERGE=1 of more models, with LONG=1 of all.
 set -u
-plgen=$1
-judge=$2
+plgen=$(realpath "$1")
+judge=$(realpath "$2")
 root=$3
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $judge in /*) ;; *) judge=$PWD/$judge ;; esac
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"

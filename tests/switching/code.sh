@@ -5,20 +5,10 @@
 #
 #     code.sh PLGEN SOURCE_ROOT NAME_variants.c ...
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
 shift 2
-case $plgen in
-    /*) ;;
-    *) plgen=$PWD/$plgen ;;
-esac
-files=
-for file; do
-    case $file in
-        /*) files="$files $file" ;;
-        *) files="$files $PWD/$file" ;;
-    esac
-done
+files=$(realpath "$@")
 here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"

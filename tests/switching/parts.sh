@@ -4,12 +4,8 @@
 #
 #     parts.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in
-    /*) ;;
-    *) plgen=$PWD/$plgen ;;
-esac
 here=$root/tests/switching
 . "${0%/*}/../tap.sh"
 awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99

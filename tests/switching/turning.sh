@@ -4,12 +4,8 @@
 #
 #     turning.sh PLGEN SOURCE_ROOT
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$2
-case $plgen in
-    /*) ;;
-    *) plgen=$PWD/$plgen ;;
-esac
 here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../tap.sh"

@@ -3,15 +3,9 @@
 # coefficients.sh PLGEN DRAWN_SERIES SOURCE FIRST COUNT: for COUNT seeds the series that the generated code makes of
 # random equations, beside the coefficients that drawn_series finds by Cauchy's integral.
 set -u
-absolute() {
-	case $1 in
-		/*) echo "$1" ;;
-		*) echo "$PWD/$1" ;;
-	esac
-}
-plgen=$(absolute "$1")
-drawn_series=$(absolute "$2")
-source=$(absolute "$3")
+plgen=$(realpath "$1")
+drawn_series=$(realpath "$2")
+source=$(realpath "$3")
 first=$4
 many=$5
 . "$source/tests/run_cc.sh"

@@ -3,14 +3,8 @@
 # reach.sh PLGEN SOURCE: the radius of convergence at the start that --explain and --explain=json tell, beside the place
 # of the nearest singularity in closed form; and the order that they tell.
 set -u
-absolute() {
-	case $1 in
-		/*) echo "$1" ;;
-		*) echo "$PWD/$1" ;;
-	esac
-}
-plgen=$(absolute "$1")
-source=$(absolute "$2")
+plgen=$(realpath "$1")
+source=$(realpath "$2")
 . "$source/tests/tap.sh"
 
 # told NAME EXPECTED: of drawn.spec; null: none is told

@@ -9,11 +9,9 @@
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
-plgen=$1
-root=$2
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 shift 2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
 specs=
 for spec; do
     case $spec in /*) ;; *) spec=$PWD/$spec ;; esac

@@ -5,9 +5,8 @@
 # params, which NAME_retune looks at: of a linear model, of one that reads params in its step, of regions, of what
 # follows from params.
 set -u
-plgen=$1
+plgen=$(realpath "$1")
 root=$(cd "$2" && pwd) || exit 99
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
 . "$root/tests/run_cc.sh"
 . "$root/tests/tap.sh"
 runtime_archive "$root/runtime"

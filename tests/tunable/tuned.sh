@@ -11,10 +11,7 @@
 set -eu
 LC_ALL=C
 export LC_ALL
-case $1 in
-    /*) plgen=$1 ;;
-    *) plgen=$PWD/$1 ;;
-esac
+plgen=$(realpath "$1")
 real=$2
 code=$3
 header=$4

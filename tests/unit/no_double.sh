@@ -6,9 +6,8 @@
 #
 # A compiler that is not installed, or is for another machine, is skipped.
 set -u
-runtime=$1
+runtime=$(realpath "$1")
 shift
-case $runtime in /*) ;; *) runtime=$PWD/$runtime ;; esac
 . "${0%/*}/../tap.sh"
 
 arithmetic='(add|sub|mul|div|max|min|sqrt|u?comi|and|andn|xor|f?n?m(add|sub)[0-9]*|cmp[a-z]*)'

@@ -9,10 +9,8 @@
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
 set -u
-plgen=$1
-root=$2
-case $plgen in /*) ;; *) plgen=$PWD/$plgen ;; esac
-case $root in /*) ;; *) root=$PWD/$root ;; esac
+plgen=$(realpath "$1")
+root=$(realpath "$2")
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "$root/tests/compilers.sh"
 . "$root/tests/tap.sh"

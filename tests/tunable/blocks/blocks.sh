@@ -5,9 +5,9 @@
 # solution for random models; what it returns for bad values; what keeps its tables. With MERGE=1 in the environment in
 # float too, at other steps, and from 150 starts instead of 40.
 set -u
-plgen=$(cd "$(dirname "$1")" && pwd)/$(basename "$1") || exit 99
+plgen=$(realpath "$1") || exit 99
 root=$(cd "$2" && pwd) || exit 99
-chains=$(cd "$(dirname "$3")" && pwd)/$(basename "$3") || exit 99
+chains=$(realpath "$3") || exit 99
 library=$PLRT
 here=$root/tests/tunable/blocks
 . "$root/tests/run_cc.sh"
