@@ -180,8 +180,8 @@ void truth_of_linear(const struct problem *problem, struct truth *truth);
 void truth_scales(struct problem *problem, struct truth *truth);
 /* The largest of `most` and how far y is from the truth at the end of unit k; what is not a number stays */
 double truth_farther(double most, const struct truth *truth, int k, const double *y);
-/* The road beside quadruple precision for models by hand: extrapolation in long double; no agreement, no roads */
-struct truth *truth_by_extrapolation(struct problem *problem);
+/* How far NAME_rhs is from the equations by hand at y, of the largest slope; 0: there are none */
+double truth_slopes_off(const struct problem *problem, double t, const double *y);
 /* The largest difference at the ends of units, relative to its scales; rows: 2n for each */
 double truth_error(const struct truth *truth, const double *rows);
 void truth_free(struct truth *truth);

@@ -4,8 +4,7 @@
 # of scheme radau, as functions that a peer compiles together with its stepper, as plgen's step is: what a user of that
 # method writes by hand. Each file that includes HEADER has its own copies. A peer is instantiated for every name of
 # EQUATIONS, and goes through NAME_rhs for a problem that is not in it; EACH includes a stepper once a model
-# (instances.h). tests/charts/peers.c holds the derivatives against differences; quad_taylor.c has the equations by
-# hand.
+# (instances.h). tests/charts/peers.c holds the derivatives against differences; truth.c has the equations by hand.
 #
 #     NAME_slopes(t, y, f)           f = y' at y = n coordinates, n velocities
 #     NAME_jacobian(t, y, Jq, Jv)    derivatives of the accelerations, n x n, row-major

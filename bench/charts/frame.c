@@ -12,7 +12,7 @@
  * the record's step.
  */
 #include "amplification.h"
-#include "quad_taylor.h"
+#include "quad.h"
 #include "record.h"
 
 #include <math.h>
@@ -20,7 +20,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-typedef __float128 quad;
 enum { SAMPLES = RECORD_SAMPLES, STOREYS = 3, SIZE = 2 * STOREYS, ROOF = 2 };
 static const double sample_time = RECORD_STEP;
 

@@ -24,9 +24,8 @@
 #include <setjmp.h>
 #include <stdlib.h>
 
-#include "charts.h"
+#include "quad.h"
 
-typedef __float128 quad;
 enum { MOST_STATES = 4 };
 
 /* ---- what is true: q, then their velocities ---- */

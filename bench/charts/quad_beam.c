@@ -2,13 +2,11 @@
 /* The beams by Taylor series in quadruple precision. Its fastest mode turns 12 times as far in a step as the series'
  * terms need to begin to fall, so that some 70 terms are taken; w, which changes slowly, needs nine. */
 #include "quad_beam.h"
-#include "quad_taylor.h"
 
 #include <quadmath.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef __float128 quad;
 enum { N = BEAM_N, ORDER = 120, SPEED_TERMS = 9, PARTS = 8 };
 
 /* Matrix Market: coordinate real symmetric or general, or array real general; entries of `columns` columns */
@@ -219,14 +217,14 @@ void quad_beam(const struct problem *p, struct truth *t)
 {
 	static struct beam_series x;
 	const struct quad_beam *beam = quad_beam_matrices();
-	const quad unit = quad_of_decimal(p->unit), h = unit / PARTS;
+	const quad unit = exactly(p->unit), h = unit / PARTS;
 	quad y[2 * N] = { 0 }, largest[2] = { 1e-3Q, 1e-3Q };
 	gather(&x.inverse, beam->inverse);
 	gather(&x.K, beam->K);
 	gather(&x.G, beam->G);
 	gather(&x.DM, beam->DM);
 	for (int i = 0; i < 2 * N; i++)
-		y[i] = quad_of_decimal(p->start[i]);
+		y[i] = exactly(p->start[i]);
 	for (int k = 0; k < p->units; k++)
 		for (int part = 0; part < PARTS; part++) {
 			step(&x, beam, speed_of(p), (k + (quad)part / PARTS) * unit, h, y, largest);

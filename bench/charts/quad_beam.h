@@ -5,19 +5,20 @@
 #ifndef QUAD_BEAM_H
 #define QUAD_BEAM_H
 
-#include "charts.h"
+#include "quad.h"
 
 enum { BEAM_N = 15 };
 
 struct quad_beam {                      /* M^-1: 15 x 15; the others as they stand in their files, row-major */
-	__float128 inverse[BEAM_N][BEAM_N], K[BEAM_N][BEAM_N], G[BEAM_N][BEAM_N], DM[BEAM_N][BEAM_N];  /* DM: D - M */
-	__float128 fu[BEAM_N], fw[BEAM_N];
+	quad inverse[BEAM_N][BEAM_N], K[BEAM_N][BEAM_N], G[BEAM_N][BEAM_N], DM[BEAM_N][BEAM_N];  /* DM: D - M */
+	quad fu[BEAM_N], fw[BEAM_N];
 };
 /* Read once; a file that is not there or not Matrix Market ends the program. */
 const struct quad_beam *quad_beam_matrices(void);
 
 bool quad_beam_has(const struct problem *p);
-/* As quad_taylor, with steps of an eighth of a unit: the unit must divide 15 s. Off by less than 1e-25 a second. */
+/* Fills t->at_end, t->between (at TRUTH_BETWEEN), and the scales, by steps of an eighth of a unit: the unit must divide
+ * 15 s. Off by less than 1e-25 a second. */
 void quad_beam(const struct problem *p, struct truth *t);
 
 #endif

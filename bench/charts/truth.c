@@ -3,20 +3,17 @@
  *
  *   linear         e^{A t} in quadruple precision (33 digits), loads carried as states: no error that a double could
  *                  see.
- *   nonlinear      the equations by hand, by Taylor series in quadruple precision (quad_taylor.c); beside it
- *                  (truth_by_extrapolation, which tests hold against it) by extrapolation (Gragg, Bulirsch, Stoer) in
- *                  long double (19 digits).
- *   the beams      the same on their matrices' decimals (quad_beam.c); beside it on matrices found by quadrature of
- *                  their definition (tests/remainder/cantilever.c).
+ *   not linear     the equations by hand, by extrapolation in quadruple precision (gragg.h), whose steps shrink at the
+ *                  kinks of the half car.
+ *   the beams      by Taylor series on their matrices' decimals (quad_beam.c).
  *   clearances     the equations by hand, by Taylor series between crossings in long double (tests/switching/hand.c).
- *   the half car   the equations by hand, by extrapolation in long double, whose steps shrink at its kinks.
- *   what has none of these: NAME_rhs, in double, by extrapolation in long double.
+ *   what has none of these: NAME_rhs, in double, by such extrapolation.
  *
  * The second road is another method on NAME_rhs in double; how far the two are apart is the truth's `agreement`, and
  * says how good that method is as much as how good the truth is. */
 #include "charts.h"
 #include "gears.h"
-#include "quad_taylor.h"
+#include "quad_beam.h"
 
 #include "../../tests/remainder/elliptic.h"
 
@@ -25,20 +22,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NUMBER long double
-#include "equations.h"
-
-typedef __float128 quad;
 #define EXPONENTIAL_REAL quad
 #include "taylor_exponential.h"
 
 enum { MOST = 64 };                 /* entries of a state, load states included */
-
-/* 0.01 means 1/100, not the double next to it: a decimal of at most 13 digits is taken as such. */
-static quad exactly(double x)
-{
-	return quad_of_decimal(x);
-}
 
 /* ---- linear: closed form ---- */
 
@@ -130,64 +117,64 @@ void truth_of_linear(const struct problem *p, struct truth *t)
 	}
 }
 
-/* ---- nonlinear: extrapolation in long double ---- */
+/* ---- what is not linear: extrapolation ---- */
 
-struct equations {
-	const char *name;
-	void (*slopes)(const struct problem *p, real t, const real *y, real *dydt);
-	/* relative to the scales; the beams' stiffness (1e8 /s^2) leaves no more to long double */
-	real tolerance;
-	/* second road: GSL rk8pd with this many fixed steps a unit (the beams: where steps end on stability, not on
-	 * accuracy, its control lets errors of 1e-9 pass); 0: by tolerances */
-	int parts;
-};
-
-#define SMOOTH(NAME, N) \
-static void NAME##_of(const struct problem *p, real t, const real *y, real *dydt) \
+/* The equations a second time, as they are written in the models' specs: they share nothing with plgen or NAME_rhs.
+ * x, z: coordinates; v, w: their velocities; a: the accelerations */
+#define BY_HAND(NAME, N, ...) \
+static void NAME(const struct problem *of, quad t, const quad *y, quad *f) \
 { \
-	(void)p; \
-	NAME##_slopes(t, y, dydt); \
+	const quad x = y[0], z = y[(N) - 1], v = y[N], w = y[2 * (N) - 1]; \
+	quad *a = f + (N); \
+	(void)of, (void)t, (void)x, (void)z, (void)v, (void)w; \
+	memcpy(f, y + (N), (N) * sizeof *f); \
+	__VA_ARGS__; \
 }
-EQUATIONS(SMOOTH)
-
-/* tests/remainder/cantilever.h, whose folder has a hand.h of its own */
-real cantilever_speed(real Om, real t, real *slope);
-void cantilever_slopes(real w, real dw, const real *y, real *dydt);
-
-static void beam(const struct problem *p, real t, const real *y, real *dydt)
-{
-	real dw, w = cantilever_speed(strcmp(p->name, "beam4") == 0 ? 4 : 15, t, &dw);
-	cantilever_slopes(w, dw, y, dydt);
-}
+#define DRAGGED(q, v) (0.1Q * v * sqrtq(v * v + 0.01Q) + q + q * q * q)
+BY_HAND(pendulum, 1, a[0] = -sinq(x))
+BY_HAND(vanderpol, 1, a[0] = (1 - x * x) * v - x)
+BY_HAND(vanderpol_stiff, 1, a[0] = 100 * (1 - x * x) * v - x)
+BY_HAND(vanderpol_stiffer, 1, a[0] = 1000 * (1 - x * x) * v - x)
+BY_HAND(rayleigh, 1, a[0] = (1 - v * v) * v - x)
+BY_HAND(duffing, 1, a[0] = 0.5Q * cosq(1.4Q * t) - 0.2Q * v - x - x * x * x)
+BY_HAND(mathieu, 1, a[0] = (0.4Q * cosq(2 * t) - 1) * x - 0.1Q * v)
+BY_HAND(henon_heiles, 2, a[0] = -x - 2 * x * z; a[1] = z * z - x * x - z)
+BY_HAND(coupled_vanderpol, 2, const quad p = 0.3Q * (z - x); a[0] = (1 - x * x) * v - x + p;
+        a[1] = (1 - z * z) * w - 1.2Q * z - p)
+BY_HAND(double_pendulum, 2, const quad s = sinq(x - z), c = cosq(x - z), p = s * w * w + 2 * sinq(x),
+        q = s * v * v - sinq(z), m = 2 - c * c; a[0] = -(p + c * q) / m; a[1] = (2 * q + c * p) / m)
+BY_HAND(duffing_pair, 2, const quad p = 0.5Q * (z - x); a[0] = 0.5Q * cosq(1.2Q * t) + p - DRAGGED(x, v);
+        a[1] = -p - DRAGGED(z, w))
+BY_HAND(spherical_pendulum, 2, const quad s = sinq(x), c = cosq(x); a[0] = s * c * w * w - s;
+        a[1] = -2 * v * w * c / s)
 
 /* bench/charts/specs/half_car_lifting.spec: its ramp is met by the rear axle 0.26 s after the front one */
-static real half_car_strut(real stiffness, real top, real speed, real wheel, real wheel_speed)
+static quad half_car_strut(quad stiffness, quad top, quad speed, quad wheel, quad wheel_speed)
 {
-	const real draw = speed - wheel_speed;
+	const quad draw = speed - wheel_speed;
 	return stiffness * (top - wheel) + (draw > 0 ? 2400 : 800) * draw;
 }
 
-static real half_car_tyre(real since, real wheel)
+static quad half_car_tyre(quad since, quad wheel)
 {
-	const real road = since < 0 ? 0 : since < 0.04L ? 3.75L * since : 0.15L;
-	return 180000 * fmaxl(road - wheel, 0);
+	const quad road = since < 0 ? 0 : since < 0.04Q ? 3.75Q * since : 0.15Q;
+	return 180000 * fmaxq(road - wheel, 0);
 }
 
-static void half_car_lifting(const struct problem *p, real t, const real *y, real *dydt)
+static void half_car_lifting(const struct problem *p, quad t, const quad *y, quad *dydt)
 {
 	(void)p;
-	const real g = 9.81L, heave = y[0], pitch = y[1], *v = y + 4,
-		front = half_car_strut(18000, heave - 1.1L * pitch, v[0] - 1.1L * v[1], y[2], v[2]),
-		rear = half_car_strut(20000, heave + 1.5L * pitch, v[0] + 1.5L * v[1], y[3], v[3]);
-	for (int i = 0; i < 4; i++)
-		dydt[i] = v[i];
+	const quad g = 9.81Q, heave = y[0], pitch = y[1], *v = y + 4,
+		front = half_car_strut(18000, heave - 1.1Q * pitch, v[0] - 1.1Q * v[1], y[2], v[2]),
+		rear = half_car_strut(20000, heave + 1.5Q * pitch, v[0] + 1.5Q * v[1], y[3], v[3]);
+	memcpy(dydt, v, 4 * sizeof *v);
 	dydt[4] = -(front + rear) / 600 - g;
-	dydt[5] = (1.1L * front - 1.5L * rear) / 900;
+	dydt[5] = (1.1Q * front - 1.5Q * rear) / 900;
 	dydt[6] = (front + half_car_tyre(t, y[2])) / 40 - g;
-	dydt[7] = (rear + half_car_tyre(t - 0.26L, y[3])) / 40 - g;
+	dydt[7] = (rear + half_car_tyre(t - 0.26Q, y[3])) / 40 - g;
 }
 
-static void as_emitted(const struct problem *p, real t, const real *y, real *dydt)
+static void as_emitted(const struct problem *p, quad t, const quad *y, quad *dydt)
 {
 	double narrow[MOST], slope[MOST];
 	for (int i = 0; i < 2 * p->n; i++)
@@ -197,90 +184,76 @@ static void as_emitted(const struct problem *p, real t, const real *y, real *dyd
 		dydt[i] = slope[i];
 }
 
-#define SMOOTH_ROW(NAME, N) { #NAME, NAME##_of, 1e-16L, 0 },
-static const struct equations by_hand[] = {
-	EQUATIONS(SMOOTH_ROW)
-	{ "half_car_lifting", half_car_lifting, 1e-16L, 0 },
-	{ "beam4", beam, 1e-13L, 40 },
-	{ "beam15", beam, 1e-13L, 40 },
-	{ NULL, as_emitted, 1e-16L, 0 }
+typedef void equations(const struct problem *p, quad t, const quad *y, quad *dydt);
+
+#define ROW(NAME) { #NAME, NAME }
+static const struct by_hand { const char *name; equations *slopes; } by_hand[] = {
+	ROW(pendulum), ROW(vanderpol), ROW(vanderpol_stiff), ROW(vanderpol_stiffer), ROW(rayleigh), ROW(duffing),
+	ROW(mathieu), { "quad2dof", henon_heiles }, ROW(henon_heiles), ROW(coupled_vanderpol), ROW(double_pendulum),
+	ROW(duffing_pair), ROW(spherical_pendulum), ROW(half_car_lifting),
 };
 
-struct extrapolation {
-	const struct problem *p;
-	const struct equations *e;
-	int size;
-	real step;                      /* proposed [s] */
-	real scale_q, scale_v;          /* over the history so far */
-};
+/* NULL: it is not here */
+static equations *equations_of(const struct problem *p)
+{
+	for (size_t i = 0; i < sizeof by_hand / sizeof *by_hand; i++)
+		if (strcmp(by_hand[i].name, p->name) == 0)
+			return by_hand[i].slopes;
+	return NULL;
+}
 
-#define GRAGG_TYPE const struct extrapolation
-#define GRAGG_SLOPES(x, t, y, f) (x)->e->slopes((x)->p, t, y, f)
+double truth_slopes_off(const struct problem *p, double t, const double *y)
+{
+	quad wide[MOST], f[MOST];
+	double slope[MOST], most = 0, size = 0;
+	equations *slopes = equations_of(p);
+	if (!slopes)
+		return 0;
+	for (int i = 0; i < 2 * p->n; i++)
+		wide[i] = y[i];
+	slopes(p, t, wide, f);
+	problem_slope(p, t, y, slope);
+	for (int i = 0; i < 2 * p->n; i++) {
+		most = fmax(most, fabs((double)(f[i] - slope[i])));
+		size = fmax(size, fabs(slope[i]));
+	}
+	return most / size;
+}
+
+struct road { const struct problem *p; equations *slopes; };
+#define GRAGG_REAL quad
+#define GRAGG_TYPE const struct road
+#define GRAGG_SLOPES(x, t, y, f) (x)->slopes((x)->p, t, y, f)
 #include "gragg.h"
 
-/* The error is that of order 16, relative to the scales, of what is kept, of order 18. */
-static real extrapolated_error(const struct extrapolation *x, real t, real H, const real *y, real *result)
+/* With errors of a step below the tolerance, relative to the scales */
+static void extrapolated(const struct problem *p, equations *slopes, quad tolerance, struct truth *t)
 {
-	real fewer[MOST], error = 0;
-	extrapolate(x, x->size, t, H, y, result, fewer);
-	for (int i = 0; i < x->size && error == error; i++) {   /* until one is no number */
-		const real off = fabsl(result[i] - fewer[i]) / (i < x->p->n ? x->scale_q : x->scale_v);
-		error = off <= error ? error : off;
+	const struct road road = { p, slopes };
+	const quad unit = exactly(p->unit);
+	bool velocity[MOST];
+	struct gragg g = { .size = 2 * p->n, .velocity = velocity, .tolerance = tolerance, .h = unit / 10,
+	                   .least = 1e-12Q, .scale = { 1e-3Q, 1e-3Q }, .parts = 16, .most = 1000000000 };
+	quad y[MOST] = { 0 };
+	for (int i = 0; i < g.size; i++) {
+		velocity[i] = i >= p->n;
+		y[i] = exactly(p->start[i]);
 	}
-	return error;
-}
-
-static void keep_scales(struct extrapolation *x, const real *y)
-{
-	for (int i = 0; i < x->p->n; i++) {
-		x->scale_q = fmaxl(x->scale_q, fabsl(y[i]));
-		x->scale_v = fmaxl(x->scale_v, fabsl(y[x->p->n + i]));
-	}
-}
-
-static void follow(struct extrapolation *x, real from, real to, real *y)
-{
-	const real tolerance = x->e->tolerance;
-	real result[MOST];
-	for (real t = from; t < to;) {
-		const bool last = t + 1.01L * x->step >= to;
-		const real H = last ? to - t : x->step, error = extrapolated_error(x, t, H, y, result);
-		const real factor = error > 0 ? 0.9L * powl(tolerance / error, 1.0L / (2 * COLUMNS - 1)) : 4;
-		if (!(error <= tolerance)) {
-			x->step = H * (factor > 0.2L && factor < 0.9L ? factor : 0.2L);
-			if (x->step < 1e-12L)
-				leave(x->p->name, "the extrapolation gives up");
-			continue;
-		}
-		memcpy(y, result, sizeof result);
-		keep_scales(x, y);
-		t = last ? to : t + H;
-		if (!last || factor * H > x->step)
-			x->step = H * fminl(factor, 4);
-	}
-}
-
-static void extrapolated(const struct problem *p, const struct equations *e, struct truth *t)
-{
-	struct extrapolation x = { .p = p, .e = e, .size = 2 * p->n, .step = (real)p->unit / 10, .scale_q = 1e-3L,
-	                           .scale_v = 1e-3L };
-	const real unit = (real)exactly(p->unit);
-	real y[MOST] = { 0 };
-	for (int i = 0; i < x.size; i++)
-		y[i] = (real)exactly(p->start[i]);
-	keep_scales(&x, y);
+	keep_scales(&g, y);
 	for (int k = 0; k < p->units; k++) {
-		const real inside = (k + (real)TRUTH_BETWEEN) * unit;
-		follow(&x, k * unit, inside, y);
-		for (int i = 0; i < x.size; i++)
-			t->between[k * x.size + i] = (double)y[i];
-		follow(&x, inside, (k + 1) * unit, y);
-		for (int i = 0; i < x.size; i++)
-			t->at_end[k * x.size + i] = (double)y[i];
+		const quad inside = (k + (quad)TRUTH_BETWEEN) * unit;
+		bool good = walk_to(&road, &g, k * unit, inside, y);
+		for (int i = 0; i < g.size; i++)
+			t->between[k * g.size + i] = (double)y[i];
+		good = good && walk_to(&road, &g, inside, (k + 1) * unit, y);
+		if (!good)
+			leave(p->name, "the extrapolation gives up");
+		for (int i = 0; i < g.size; i++)
+			t->at_end[k * g.size + i] = (double)y[i];
 	}
 	/* over all steps: a jump's peak lies between the ends of units */
-	t->scale_q = (double)x.scale_q;
-	t->scale_v = (double)x.scale_v;
+	t->scale_q = (double)g.scale[0];
+	t->scale_v = (double)g.scale[1];
 }
 
 /* ---- clearances: Taylor series between crossings, in long double ---- */
@@ -364,42 +337,34 @@ static double difference_at(const struct problem *p, const struct truth *t, cons
 }
 
 /* Another integrator in double: where tolerances are that tight, rounding decides which of them is best, and the best
- * is taken. */
-static double solver_difference(const struct problem *p, const struct truth *t, int parts)
+ * is taken. fixed: with so many steps a unit, where they end on stability, not on accuracy, and its control lets errors
+ * of 1e-9 pass. */
+static double solver_difference(const struct problem *p, const struct truth *t, bool fixed)
 {
-	const struct method *method = method_find(parts > 0 ? "GSL rk8pd (fixed step)" : "GSL rk8pd");
+	const struct method *method = method_find(fixed ? "GSL rk8pd (fixed step)" : "GSL rk8pd");
 	double least = NAN;
-	if (method && parts > 0)
-		return difference_at(p, t, method, p->unit / parts);
+	if (method && fixed)
+		return difference_at(p, t, method, p->unit / 40);
 	for (int digits = 12; method && digits <= 15; digits++)
 		least = fmin(least, difference_at(p, t, method, pow(10, -digits)));
 	return least;
 }
 
-/* NAME_rhs in double, its sums and times in long double: for what was solved in closed form */
+/* NAME_rhs in double, its sums and times in quadruple precision: for what was solved in closed form */
 static double extrapolation_difference(const struct problem *p, const struct truth *t)
 {
-	static const struct equations emitted = { NULL, as_emitted, 1e-15L, 0 };
 	struct truth *other = truth_new(p);
-	extrapolated(p, &emitted, other);
+	extrapolated(p, as_emitted, 1e-15Q, other);
 	const double most = truth_error(t, other->at_end);
 	truth_free(other);
 	return most;
 }
 
-static const struct equations *equations_of(const struct problem *p)
-{
-	const struct equations *e = by_hand;
-	while (e->name && strcmp(e->name, p->name) != 0)
-		e++;
-	return e;
-}
-
 static void solve(struct problem *p, struct truth *t)
 {
-	const struct equations *e = equations_of(p);
+	equations *slopes = equations_of(p);
 	if (p->linear) {
-		t->roads = "closed form in quadruple precision; NAME_rhs by extrapolation in long double";
+		t->roads = "closed form in quadruple precision; NAME_rhs by extrapolation in quadruple precision";
 		truth_of_linear(p, t);
 		truth_scales(p, t);
 		t->agreement = extrapolation_difference(p, t);
@@ -408,18 +373,20 @@ static void solve(struct problem *p, struct truth *t)
 	if (gears_of(p->name, NULL)) {
 		t->roads = "by hand: Taylor series between crossings in long double; NAME_rhs by GSL rk8pd";
 		between_crossings(p, t);
-	} else if (quad_taylor_has(p)) {
+	} else if (quad_beam_has(p)) {
 		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd";
-		quad_taylor(p, t);
+		quad_beam(p, t);
+	} else if (slopes) {
+		t->roads = "by hand: extrapolation in quadruple precision; NAME_rhs by GSL rk8pd";
+		extrapolated(p, slopes, slopes == half_car_lifting ? 1e-18Q : 1e-22Q, t);
 	} else {
-		t->roads = e->name ? "by hand: extrapolation in long double; NAME_rhs by GSL rk8pd"
-			: "NAME_rhs: extrapolation in long double; GSL rk8pd";
-		extrapolated(p, e, t);
+		t->roads = "NAME_rhs: extrapolation in quadruple precision; GSL rk8pd";
+		extrapolated(p, as_emitted, 1e-16Q, t);
 	}
 	truth_scales(p, t);
-	t->agreement = solver_difference(p, t, gears_of(p->name, NULL) ? 0 : e->parts);
+	t->agreement = solver_difference(p, t, quad_beam_has(p));
 	if (strcmp(p->name, "pendulum") == 0) {
-		t->roads = "by hand: Taylor series in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
+		t->roads = "by hand: extrapolation in quadruple precision; NAME_rhs by GSL rk8pd; elliptic function";
 		t->agreement = fmax(t->agreement, elliptic_difference(p, t));
 	}
 }
@@ -431,14 +398,6 @@ struct truth *truth_of(struct problem *p)
 	struct truth *t = truth_new(p);
 	say_progress("%s: truth", p->name);
 	solve(p, t);
-	return t;
-}
-
-struct truth *truth_by_extrapolation(struct problem *p)
-{
-	struct truth *t = truth_new(p);
-	extrapolated(p, equations_of(p), t);
-	truth_scales(p, t);
 	return t;
 }
 

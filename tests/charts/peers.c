@@ -300,7 +300,7 @@ int main(int argc, char **argv)
 	check_orders(load(argv[1], "henon_heiles", 0.1, 100));
 	check_errors(load(argv[1], "pendulum", 0.1, 100), all, 1e-9, 3e-7);
 	check_errors(load(argv[1], "mathieu", 0.1, 100), all, 1e-9, 3e-7);
-	check_errors(load(argv[1], "duffing_pair", 0.1, 100), all, 1e-9, 3e-7);
+	check_errors(load(argv[1], "duffing_pair", 0.1, 100), all, 1e-8, 3e-6);
 	check_errors(load(argv[1], "vanderpol_stiff", 0.1, 1000), stiff, 1e-9, 1e-5);
 	check_errors(load(argv[1], "beam4", 0.01, 100), stiff, 1e-6, 1e-4);
 	check_errors(load(argv[1], "gear1", 0.1, 200), regions, 1e-12, 1e-9);

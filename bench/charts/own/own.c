@@ -148,14 +148,14 @@ static bool run_single(struct line *line, double *rows)
 
 /* ---- the history ---- */
 
-static void describe(const char *folder, struct extrapolation *x)
+static void describe(const char *folder, bool *velocity)
 {
 	const pl_model *model = variant_model(folder, "model");
 	void *state = room_for(1, model->size);
 	model->init(state);
 	model->get(state, history.start);
 	for (int i = 0; i < N; i++)
-		x->velocity[i] = model->state_names[i][strlen(model->state_names[i]) - 1] == '\'';
+		velocity[i] = model->state_names[i][strlen(model->state_names[i]) - 1] == '\'';
 	for (int i = 0; i < INPUTS; i++)
 		history.ramp[i] = model->start_samples[i] == 1;
 	free(state);
@@ -180,16 +180,16 @@ static void make_signal(void)
 		history.single_ends[i] = (float)history.ends[i];
 }
 
-static void find_scales(const struct extrapolation *x, const double *rows)
+static void find_scales(const bool *velocity, const double *rows)
 {
 	double most[2] = {0, 0};
 	for (int k = -1; k < history.units; k++)
 		for (int i = 0; i < N; i++) {
-			double *to = &most[x->velocity[i]];
+			double *to = &most[velocity[i]];
 			*to = fmax(*to, fabs(k < 0 ? history.start[i] : rows[k * N + i]));
 		}
 	for (int i = 0; i < N; i++)
-		history.scale[i] = most[x->velocity[i]] > 0 ? most[x->velocity[i]] : 1;
+		history.scale[i] = most[velocity[i]] > 0 ? most[velocity[i]] : 1;
 }
 
 static double off_by(const double *rows, const double *truth)
@@ -334,7 +334,8 @@ static void write_table(const char *folder, const struct line *lines, int count,
 int main(int argc, char **argv)
 {
 	static struct line lines[MOST_LINES];
-	static struct extrapolation x;
+	static bool velocity[N];
+	struct gragg x = {.size = N, .velocity = velocity, .most = 1000000000L / N};
 	const bool quick = argc > 1 && strcmp(argv[1], "-q") == 0;
 	if (argc != 4 + quick) {
 		fputs("usage: own [-q] EVERY UNITS FOLDER\n", stderr);
@@ -347,13 +348,12 @@ int main(int argc, char **argv)
 		leave("UNTIL and EVERY", "an output at least has to come before the end");
 	double *truth = room_for((size_t)history.units * N, sizeof *truth),
 		*rows = room_for((size_t)history.units * N, sizeof *rows);
-	describe(folder, &x);
+	describe(folder, velocity);
 	make_signal();
-	x.most = 1000000000L / N;
 	if (!find_truth(&x, truth))
 		leave("what is true", "extrapolation does not come to the end: the motion grows without bound, or its "
 		      "equations are too stiff or too rough for it");
-	find_scales(&x, truth);
+	find_scales(velocity, truth);
 	const int ours = read_list(folder, lines), count = add_peers(lines, ours);
 	/* of what is true with whatever comes nearest, another road in every case */
 	double agreement = HUGE_VAL;
