@@ -262,12 +262,6 @@ static void check_roads(struct checks *c, const char *name)
 
 /* ---- the quality of other methods ---- */
 
-/* Sizes for a log axis; 0 what rounding makes */
-static double seen(double x)
-{
-	return fabs(x) < 1e-13 ? 0 : fabs(x);
-}
-
 static void chart_quality(FILE *csv, int points)
 {
 	struct subject s;
@@ -276,10 +270,10 @@ static void chart_quality(FILE *csv, int points)
 			const double share = 0.005 * pow(100, (double)i / (points - 1));
 			const struct quality q = asked_of_subject(&s, 2 * M_PI * share);
 			if (!isnan(q.damping))
-				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation,
-					100 * q.decay, q.damping, 100 * seen(q.elongation), 100 * seen(q.decay));
+				fprintf(csv, "%s,%.6g,%.6g,%.6g,%.6g\n", s.name, share, 100 * q.elongation,
+					100 * q.decay, q.damping);
 			else
-				fprintf(csv, "%s,%.6g,none,none,none,none,none\n", s.name, share);
+				fprintf(csv, "%s,%.6g,none,none,none\n", s.name, share);
 		}
 	}
 }
@@ -309,7 +303,7 @@ static int quality(const char *folder, int points)
 	struct checks c;
 	FILE *csv = table_open(folder, "quality.csv",
 	                       "method,h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,"
-	                       "algorithmic_damping_ratio,elongation_size,decay_size");
+	                       "algorithmic_damping_ratio");
 	say_progress("quality: period elongation and amplitude decay");
 	chart_quality(csv, points);
 	table_close(csv, "quality.csv");

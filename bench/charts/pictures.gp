@@ -463,10 +463,9 @@ do for [which=1:2] {
 					'size of the amplitude''s change in a period  [%]') offset 1,0
 			}
 			if (side == 1) { eval found_label }
-			load marked((which == 1 ? 4 : 9), '-v x=h_over_T -v y='.(which == 1 ? (side == 1 ? \
-				'period_elongation_percent' : 'amplitude_decay_percent_per_period') : \
-				(side == 1 ? 'elongation_size' : 'decay_size')).(which == 1 ? ' -v any=1' : \
-				" -v skip='in phase'"))
+			load marked((which == 1 ? 4 : 9), '-v x=h_over_T -v y='.(side == 1 ? \
+				'period_elongation_percent' : 'amplitude_decay_percent_per_period'). \
+				(which == 1 ? ' -v any=1' : " -v sizes=1e-11 -v skip='in phase'"))
 			eval 'plot '.clauses
 		}
 		eval key_below(0.22, 0.125, 4, -2)
