@@ -297,10 +297,11 @@ bool is_tunable(const struct code *c, const char *name)
 	return false;
 }
 
-static struct code *code_of(char *text)
+static struct code *code_of(char *text, char *said)
 {
 	struct code *c = need(calloc(1, sizeof *c));
 	c->text = text;
+	c->said = said;
 	c->single = strstr(text, "\nextern const pl_modelf ") != NULL;
 	c->name = text_behind(text, c->single ? "\nextern const pl_modelf " : "\nextern const pl_model ", "; ");
 	size_t length = c->name ? strlen(c->name) : 0;
@@ -342,8 +343,7 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 	}
 	if (!quiet)
 		say_text(said.err);
-	free(said.err);
-	return code_of(said.out);
+	return code_of(said.out, said.err);
 }
 
 /* ---- from C to a shared object ---- */

@@ -39,19 +39,34 @@ static size_t definitions_for(const struct options *o, const struct code *c, boo
 	return count;
 }
 
-/* Which params are tunable is known of the C alone: it is made without the numbers, and once more with those that
- * belong into it. What keeps the first from being made is reported of the one with all. */
+static bool gives_tunable(const struct options *o, const struct code *c)
+{
+	double value;
+	bool any = false;
+	for (size_t i = 0; i < o->definitions; i++)
+		any = any || (read_number(o->definition[i].value, &value) && is_tunable(c, o->definition[i].name));
+	return any;
+}
+
+/* Which params are tunable is known of the C alone. Mostly none of those given is, and the C with all numbers is what
+ * is wanted; else it is made without the numbers, and once more with those that belong into it. What keeps the first of
+ * these from being made is reported of the one with all. */
 static void make_code(struct start *s)
 {
 	const char **definition = need(calloc(s->options.definitions + 1, sizeof *definition));
-	size_t few = definitions_for(&s->options, NULL, false, definition), all;
-	bool numbers = few < s->options.definitions;
+	const size_t few = definitions_for(&s->options, NULL, false, definition);
+	size_t all = definitions_for(&s->options, NULL, true, definition);
 	char *error;
 	int status;
-	s->code = generate(s->tools, &s->options, definition, few, numbers, &error, &status);
-	all = definitions_for(&s->options, s->code, true, definition);
-	if (numbers)
+	s->code = generate(s->tools, &s->options, definition, all, true, &error, &status);
+	if (few < s->options.definitions && (!s->code || gives_tunable(&s->options, s->code))) {
+		definitions_for(&s->options, NULL, false, definition);
+		s->code = generate(s->tools, &s->options, definition, few, true, &error, &status);
+		all = definitions_for(&s->options, s->code, true, definition);
 		s->code = generate(s->tools, &s->options, definition, all, false, &error, &status);
+	} else if (s->code) {
+		say_text(s->code->said);
+	}
 	if (!s->code)
 		end_with(status, error);
 	free(definition);

@@ -209,6 +209,7 @@ const char *runtime_of(const struct toolchain *t);
  * NULL: it went wrong, *error says how, *status is plgen's. */
 struct code {
 	char *text;
+	char *said;                             /* what plgen warned of */
 	char *name;                             /* of the model */
 	bool single;
 	char **tunable;                         /* NULL-terminated */

@@ -110,6 +110,7 @@ void build_variant(const struct sweep *s, struct variant *v)
 		if (v->machine)
 			machine_show(v->machine, s->machine->view, o);
 		free(c->text);
+		free(c->said);
 		free(c);
 	}
 	if (v->error)
