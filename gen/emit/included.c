@@ -424,7 +424,7 @@ static bool uses(const char *text, const char *name)
 
 bool algorithms_use(const char *text, const char *name)
 {
-	bool used = false, reported = false;
+	bool used = false, reported = false, looked = false;    /* looked: through all of them, which one time does */
 	const char *own = NULL;         /* which a compiler would find in the place of the runtime's */
 	for (; *text && !used; text = next_line(text)) {
 		reported = reported || begins(text, "#define PL(");
@@ -433,9 +433,10 @@ bool algorithms_use(const char *text, const char *name)
 			own = header;
 		header = reported ? header : NULL;
 		used = header && own && strcmp(own, header) == 0;
-		for (int i = 0; header && runtime_name(i) && !used; i++)
+		for (int i = 0; header && !looked && runtime_name(i) && !used; i++)
 			used = !begins(runtime_name(i), "pl") && strstr(runtime_name(i), ".h") &&
 			       uses(runtime_text(runtime_name(i)), name);
+		looked = looked || header;
 	}
 	return used;
 }
