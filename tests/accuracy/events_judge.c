@@ -126,10 +126,11 @@ static void print_spec(const struct system *s, unsigned long seed)
 struct motion {
 	const struct system *s;
 	real t, x[MOST][ORDER + 2], v[MOST][ORDER + 2]; /* series from t; [0]: the state */
+	real square[MOST][ORDER + 2];           /* of x */
 	real load[ORDER + 2], needs[ORDER + 2]; /* the load; the friction that holds */
 	int slides, zone;               /* 1, -1, or 0: it sticks; of the clearance */
 	char trace[EVENTS];             /* what happened */
-	int events, touch;              /* touch: the stop has just been met */
+	int events, last;               /* last: the event that it begins behind; GUARDS: none */
 };
 
 static real mass(const struct motion *m, int i)
@@ -155,14 +156,16 @@ static void expand_load(struct motion *m)
 }
 
 /* The k-th coefficient of the force on a mass without friction */
-static real force(const struct motion *m, int i, int k)
+static real force(struct motion *m, int i, int k)
 {
 	const struct system *s = m->s;
 	const real *x = m->x[i];
 	real sum = -s->p[K] * x[k] - s->p[C] * m->v[i][k] + (i == 0 ? m->load[k] : 0);
+	m->square[i][k] = 0;
 	for (int a = 0; a <= k && s->p[B] > 0; a++)
-		for (int b = 0; a + b <= k; b++)
-			sum -= s->p[B] * x[a] * x[b] * x[k - a - b];
+		m->square[i][k] += x[a] * x[k - a];
+	for (int a = 0; a <= k && s->p[B] > 0; a++)
+		sum -= s->p[B] * m->square[i][a] * x[k - a];
 	if (i > 0)
 		sum -= 3 * s->p[K] * (x[k] - m->x[i - 1][k]);
 	if (i + 1 < s->n)
@@ -224,6 +227,29 @@ static real guard(const struct motion *m, int which, real h)
 	}
 }
 
+static real size_of(real value)
+{
+	return value < 0 ? -value : value;
+}
+
+/* By how much a series moves at most until h */
+static real swing(const real *c, real h)
+{
+	real sum = 0;
+	for (int k = ORDER; k > 0; k--)
+		sum = (sum + size_of(c[k])) * h;
+	return sum;
+}
+
+static int may_rise(const struct motion *m, int which, real h)
+{
+	const struct system *s = m->s;
+	const real by = which == HITS ? swing(m->x[s->stop], h) + (s->beside ? swing(m->x[s->stop + 1], h) : 0)
+		: which == SLIPS ? swing(m->v[s->rubs], h) + (s->pairs ? swing(m->v[s->rubs + 1], h) : 0)
+		: which == LETS_UP || which == LETS_DOWN ? swing(m->needs, h) : swing(m->x[s->clears], h);
+	return guard(m, which, 0) + by > -1e-25Q;
+}
+
 static real root(const struct motion *m, int which, real low, real high)
 {
 	for (int i = 0; i < 130; i++) {
@@ -234,16 +260,16 @@ static real root(const struct motion *m, int which, real low, real high)
 }
 
 /* The first event within h, which becomes less; GUARDS: none */
-static int first_event(const struct motion *m, int last, real *h)
+static int first_event(const struct motion *m, real *h)
 {
 	enum { LOOKS = 16 };
 	int first = GUARDS;
 	for (int which = 0; which < GUARDS; which++) {
 		const real end = *h;
 		real before = 0;
-		for (int k = 1; k <= LOOKS; k++) {
+		for (int k = 1; k <= LOOKS && (k > 1 || may_rise(m, which, end)); k++) {
 			const real now = end * k / LOOKS;
-			const int known = before == 0 && which == last;
+			const int known = before == 0 && which == m->last;
 			if (guard(m, which, now) > 0 && !(known && guard(m, which, now / 1024) > 0)) {
 				const real low = known ? now / 1024 : before;
 				*h = root(m, which, low, now);
@@ -316,36 +342,41 @@ static void go_on(struct motion *m, real h)
 	m->t += h;
 }
 
-/* Until `end`, or as many events as there is room for */
-static struct motion run(const struct system *s, real end)
+static struct motion begun(const struct system *s)
 {
-	struct motion m = { .s = s };
-	int last = GUARDS;
+	struct motion m = { .s = s, .last = GUARDS };
 	m.x[0][0] = s->p[X];
 	m.zone = s->clears != 0 ? 0 : m.x[0][0] > s->p[D] ? 1 : m.x[0][0] < -s->p[D] ? -1 : 0;
 	choose_sliding(&m);
-	while (m.t < end && m.events < EVENTS - 1) {
+	return m;
+}
+
+/* Until `end`, or as many events as there is room for */
+static void follow(struct motion *m, real end)
+{
+	while (m->t < end && m->events < EVENTS - 1) {
 		real h = (real)1 / 50;
-		h = m.t + h < end ? h : end - m.t;
-		expand(&m);
+		h = m->t + h < end ? h : end - m->t;
+		expand(m);
 		const real whole = h;
-		const int what = first_event(&m, last, &h);
-		go_on(&m, h);
-		if (what == GUARDS && h >= whole * 0.999Q && m.t > end - 1e-25Q)
-			m.t = end;
-		last = what;
+		const int what = first_event(m, &h);
+		go_on(m, h);
+		if (what == GUARDS && h >= whole * 0.999Q && m->t > end - 1e-25Q)
+			m->t = end;
+		m->last = what;
 		if (what != GUARDS)
-			happen(&m, what);
+			happen(m, what);
 	}
+}
+
+static struct motion run(const struct system *s, real end)
+{
+	struct motion m = begun(s);
+	follow(&m, end);
 	return m;
 }
 
 /* ---- judging ---- */
-
-static real size_of(real value)
-{
-	return value < 0 ? -value : value;
-}
 
 /* Differences of runs whose p-th param is so much more and less */
 static void differ_over(const struct system *s, int p, real apart, real found[2 * MOST])
@@ -422,23 +453,26 @@ static struct system grazing(unsigned long seed)
 {
 	static const real off[] = { 0, 1e-16Q, -1e-16Q, 3e-15Q, -3e-15Q, 1e-13Q, -1e-13Q, 1e-12Q, -1e-12Q, 4e-12Q };
 	struct system s = system_of(seed);
-	struct motion m;
 	for (; s.rubs == s.stop || (s.pairs && s.rubs + 1 == s.stop) || s.beside; s = system_of(seed))
 		seed += 1000;                   /* friction would stop it there for a while */
 	s.p[G] = 100;
 	real low = 0, high = 0;
+	struct motion m = begun(&s), from = m;  /* from: at `low`, as it first was */
 	for (int k = 2; k < END * 2 - 2 && high == 0; k++) {
-		m = run(&s, (real)k / 100);
+		follow(&m, (real)k / 100);
 		const real v = m.v[s.stop][0] - (s.beside ? m.v[s.stop + 1][0] : 0);
 		const real x = m.x[s.stop][0] - (s.beside ? m.x[s.stop + 1][0] : 0);
-		if (v > 0 && x > 0.01Q)
+		if (v > 0 && x > 0.01Q) {
 			low = (real)k / 100;
-		else if (low > 0)
+			from = m;
+		} else if (low > 0) {
 			high = (real)k / 100;
+		}
 	}
 	for (int i = 0; i < 110 && low > 0; i++) {
 		const real middle = (low + high) / 2;
-		m = run(&s, middle);
+		m = from;
+		follow(&m, middle);
 		*(m.v[s.stop][0] - (s.beside ? m.v[s.stop + 1][0] : 0) > 0 ? &low : &high) = middle;
 	}
 	s.p[G] = m.x[s.stop][0] - (s.beside ? m.x[s.stop + 1][0] : 0) + off[seed / 2 % 10];
