@@ -106,6 +106,24 @@ static inline double first_step(struct adaptive *a, int order, double t, const d
 	return fmin(100.0 * guess, h);
 }
 
+/* `walk` by what `reach` does, compiled into it */
+typedef bool reach_function(struct adaptive *a, double end, double *y);
+static inline __attribute__((always_inline)) bool walk_by(struct adaptive *a, int units, double *rows, const int size,
+                                                          reach_function *reach)
+{
+	const double unit = a->run.problem->unit;
+	long at = a->units;
+	for (int u = 0; u < units; u++) {
+		double *row = rows ? rows + (ptrdiff_t)u * size : a->now;
+		if (!reach(a, (double)++at * unit, row))
+			return false;
+		if (rows && u == units - 1)
+			memcpy(a->now, row, (size_t)size * sizeof *row);
+	}
+	a->units = at;
+	return all_finite(size, a->now);
+}
+
 struct run *adaptive_open(const struct method *method, const struct problem *problem, double setting);
 
 #define BY_TOLERANCE(NAME, ORDER, SETTINGS) \

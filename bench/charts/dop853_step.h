@@ -111,8 +111,9 @@ static bool INSTANCE(advance)(struct dop853 *d, double end)
 	return true;
 }
 
-static inline bool INSTANCE(inside)(struct dop853 *d, double end, double *row)
+static inline bool INSTANCE(reach)(struct adaptive *a, double end, double *row)
 {
+	struct dop853 *d = (struct dop853 *)a;
 	if (d->t < end && !INSTANCE(advance)(d, end))
 		return false;
 	const double s = d->last > 0.0 ? (end - d->from) / d->last : 0.0, r = 1.0 - s;
@@ -123,26 +124,11 @@ static inline bool INSTANCE(inside)(struct dop853 *d, double end, double *row)
 	return true;
 }
 
-static bool INSTANCE(reach)(struct adaptive *a, double end, double *row)
-{
-	return INSTANCE(inside)((struct dop853 *)a, end, row);
-}
-
 static bool INSTANCE(walk)(struct adaptive *a, int units, double *rows)
 {
-	struct dop853 *d = (struct dop853 *)a;
-	const double unit = a->run.problem->unit;
-	double kept[2 * EXTENT];
-	long at = a->units;
-	for (int u = 0; u < units; u++) {
-		double *row = rows ? rows + (ptrdiff_t)u * SIZE : kept;
-		if (!INSTANCE(inside)(d, (double)++at * unit, row))
-			return false;
-		if (u == units - 1)
-			memcpy(a->now, row, SIZE * sizeof *row);
-	}
-	a->units = at;
-	return all_finite(SIZE, a->now);
+	const struct dop853 *d = (const struct dop853 *)a;
+	(void)d;
+	return walk_by(a, units, rows, SIZE, INSTANCE(reach));
 }
 
 #undef EACH

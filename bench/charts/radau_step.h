@@ -292,23 +292,6 @@ INLINE bool INSTANCE(inside)(struct radau *d, double at, double *row, const int 
 	return true;
 }
 
-INLINE bool INSTANCE(march)(struct adaptive *a, int units, double *rows, const int s)
-{
-	struct radau *d = (struct radau *)a;
-	const double unit = a->run.problem->unit;
-	double kept[2 * EXTENT];
-	long at = a->units;
-	for (int u = 0; u < units; u++) {
-		double *row = rows ? rows + (ptrdiff_t)u * 2 * COORDINATES : kept;
-		if (!INSTANCE(inside)(d, (double)++at * unit, row, s))
-			return false;
-		if (u == units - 1)
-			memcpy(a->now, row, 2 * COORDINATES * sizeof *row);
-	}
-	a->units = at;
-	return all_finite(2 * COORDINATES, a->now);
-}
-
 #define BY_STAGES(S) \
 	static bool INSTANCE(reach##S)(struct adaptive *a, double end, double *row) \
 	{ \
@@ -316,7 +299,9 @@ INLINE bool INSTANCE(march)(struct adaptive *a, int units, double *rows, const i
 	} \
 	static bool INSTANCE(walk##S)(struct adaptive *a, int units, double *rows) \
 	{ \
-		return INSTANCE(march)(a, units, rows, S); \
+		const struct radau *d = (const struct radau *)a; \
+		(void)d; \
+		return walk_by(a, units, rows, 2 * COORDINATES, INSTANCE(reach##S)); \
 	}
 BY_STAGES(3)
 BY_STAGES(5)

@@ -4,6 +4,9 @@
  * tree. */
 #include "trees.h"
 
+static struct at at;                    /* where a form and its tree are compared; their values there */
+static mpfr_t found, expected;
+
 /* ---- values ---- */
 
 static bool irrational_met(void)
@@ -14,11 +17,7 @@ static bool irrational_met(void)
 /* Functions of constants become rationals of 256 bits: what holds one is compared to fewer digits */
 static void forms_have_the_values_of_their_trees(void **state)
 {
-    struct at at;
-    mpfr_t found, expected;
     int compared = 0;
-    at_init(&at);
-    mpfr_inits2(BITS, found, expected, NULL);
     (void)state;
     for (int n = 0; n < CASES; n++) {
         new_collector();
@@ -35,16 +34,11 @@ static void forms_have_the_values_of_their_trees(void **state)
     }
     print_message("# %d of %d forms compared\n", compared, CASES);
     assert_true(compared > CASES / 2);
-    mpfr_clears(found, expected, NULL);
 }
 
 static void constants_are_folded(void **state)
 {
-    struct at at;
-    mpfr_t found, expected;
     int compared = 0;
-    at_init(&at);
-    mpfr_inits2(BITS, found, expected, NULL);
     constants_only = true;
     (void)state;
     for (int n = 0; n < CASES; n++) {
@@ -65,7 +59,6 @@ static void constants_are_folded(void **state)
     constants_only = false;
     print_message("# %d of %d constants compared\n", compared, CASES);
     assert_true(compared > CASES / 3);
-    mpfr_clears(found, expected, NULL);
 }
 
 /* With sums turned round */
@@ -108,28 +101,28 @@ static void different_expressions_are_not_shared(void **state)
                                                FN_TANH, FN_ATAN, FN_ABS, FN_SGN };
     enum { FUNCTIONS = sizeof functions / sizeof *functions };
     struct form *sum;
-    int expected = 0;
+    int count = 0;
     (void)state;
     new_collector();
     sum = form_sum(state_form(0, 0), form_number(1), false);
     for (unsigned n = 2; n < 4000; n++) {
         kept_whole_power(&collector, &node, sum, n);
-        if (atoms_count(collector.atoms) != ++expected)
-            fail_msg("power %u: %d atoms, expected %d", n, atoms_count(collector.atoms), expected);
+        if (atoms_count(collector.atoms) != ++count)
+            fail_msg("power %u: %d atoms, expected %d", n, atoms_count(collector.atoms), count);
     }
     for (int k = 1; k < 1000; k++) {
         struct form *argument = form_sum(state_form(0, 0), form_number(k), false);
         for (int f = 0; f < FUNCTIONS; f++) {
             kept_call(&collector, &node, functions[f], 1, &argument);
-            if (atoms_count(collector.atoms) != ++expected)
+            if (atoms_count(collector.atoms) != ++count)
                 fail_msg("%s(x + %d): %d atoms, expected %d", function_name(functions[f]), k,
-                         atoms_count(collector.atoms), expected);
+                         atoms_count(collector.atoms), count);
         }
         for (int comparison = CMP_LT; comparison <= CMP_GE; comparison++) {
             kept_comparison(&collector, &node, (enum comparison)comparison, argument, form_number(0));
-            if (atoms_count(collector.atoms) != ++expected)
+            if (atoms_count(collector.atoms) != ++count)
                 fail_msg("comparison %d of x + %d: %d atoms, expected %d", comparison, k, atoms_count(collector.atoms),
-                         expected);
+                         count);
         }
     }
 }
@@ -166,11 +159,7 @@ static void products_commute(void **state)
 /* A factor that jumps times what is piecewise linear, as choices: the same value */
 static void switched_products_keep_their_value(void **state)
 {
-    struct at at;
-    mpfr_t found, expected;
     int switched = 0;
-    at_init(&at);
-    mpfr_inits2(BITS, found, expected, NULL);
     (void)state;
     for (int n = 0; n < CASES; n++) {
         new_collector();
@@ -196,7 +185,6 @@ static void switched_products_keep_their_value(void **state)
     }
     print_message("# %d of %d products switched\n", switched, CASES);
     assert_true(switched > CASES / 4);
-    mpfr_clears(found, expected, NULL);
 }
 
 /* What a form depends on is what changes its value. */
@@ -267,21 +255,21 @@ static void dependence_is_of_what_is_named(void **state)
 /* ---- derivatives ---- */
 
 /* Of the tree by (f(x + d) - f(x - d))/(2 d), d = 2^-80: off by some f''' d^2. False: not plain on both sides */
-static bool difference_quotient(const struct tree *tree, struct at *at, int coord, int order, mpfr_ptr slope)
+static bool difference_quotient(const struct tree *tree, int coord, int order, mpfr_ptr slope)
 {
     enum { STEP = 80 };
     mpfr_t before;
     mpq_t kept, step;
     mpq_inits(kept, step, NULL);
     mpfr_init2(before, BITS);
-    mpq_set(kept, at->state[coord][order]);
+    mpq_set(kept, at.state[coord][order]);
     mpq_set_ui(step, 1, 1);
     mpq_div_2exp(step, step, STEP);
-    mpq_add(at->state[coord][order], kept, step);
-    value_of(tree, at, slope);
-    mpq_sub(at->state[coord][order], kept, step);
-    value_of(tree, at, before);
-    mpq_set(at->state[coord][order], kept);
+    mpq_add(at.state[coord][order], kept, step);
+    value_of(tree, &at, slope);
+    mpq_sub(at.state[coord][order], kept, step);
+    value_of(tree, &at, before);
+    mpq_set(at.state[coord][order], kept);
     mpfr_sub(slope, slope, before, MPFR_RNDN);
     mpfr_mul_2ui(slope, slope, STEP - 1, MPFR_RNDN);
     mpfr_clear(before);
@@ -291,11 +279,7 @@ static bool difference_quotient(const struct tree *tree, struct at *at, int coor
 
 static void derivatives_are_difference_quotients(void **state)
 {
-    struct at at;
-    mpfr_t found, expected;
     int compared = 0, moving = 0;
-    at_init(&at);
-    mpfr_inits2(BITS, found, expected, NULL);
     (void)state;
     for (int n = 0; n < 3 * CASES; n++) {
         new_collector();
@@ -306,7 +290,7 @@ static void derivatives_are_difference_quotients(void **state)
             fail_msg("case %d: %s has a derivative for x%d, order %d, which it does not hold", n, tree_text(a.tree),
                      a.coord, a.order);
         draw_point(&at);
-        if (!difference_quotient(a.tree, &at, a.coord, a.order, expected))
+        if (!difference_quotient(a.tree, a.coord, a.order, expected))
             continue;
         sampled(a.slope[0], &at, found);
         if (mpfr_nan_p(found))                          /* 0 * log(negative) of an even power */
@@ -317,19 +301,14 @@ static void derivatives_are_difference_quotients(void **state)
     }
     print_message("# %d of %d derivatives compared, %d not 0\n", compared, 3 * CASES, moving);
     assert_true(moving > CASES / 2);
-    mpfr_clears(found, expected, NULL);
 }
 
 /* ---- at a point ---- */
 
 static void forms_at_a_point(void **state)
 {
-    struct at at;
-    mpfr_t found, expected;
     int compared = 0, constant = 0;
     static struct symbol coord = { .kind = SYMBOL_COORD };
-    at_init(&at);
-    mpfr_inits2(BITS, found, expected, NULL);
     (void)state;
     for (int n = 0; n < 2 * CASES; n++) {
         struct fixing fixing[LEAVES];
@@ -373,7 +352,6 @@ static void forms_at_a_point(void **state)
     }
     print_message("# %d of %d forms at a point compared, %d of them constants\n", compared, 2 * CASES, constant);
     assert_true(constant > CASES / 2 && compared > constant + CASES / 8);
-    mpfr_clears(found, expected, NULL);
 }
 
 /* ---- pi ---- */
@@ -527,7 +505,10 @@ int main(int argc, char **argv)
     };
     choose_cases(argc, argv);
     memory_open();
+    at_init(&at);
+    mpfr_inits2(BITS, found, expected, NULL);
     const int status = cmocka_run_group_tests(tests, NULL, NULL);
+    mpfr_clears(found, expected, NULL);
     memory_close();
     return status;
 }
