@@ -462,9 +462,9 @@ void check_mass(const struct building *b)
 	const struct model *model = b->model;
 	int n = model->n, column;
 	RATIONALS *inverse = rationals((size_t)n * (size_t)n);
-	bool regular = leading_inverse(&model->system, inverse, &column);
+	bool regular = leading_inverse(&model->system, inverse, &column), definite;
 	const struct energy *kinetic;
-	const int negative = negative_mass(b, n, n, model->system.M, &kinetic);
+	const int negative = negative_mass(b, n, n, model->system.M, &kinetic, &definite);
 	if (negative >= 0)
 		report_negative_mass(b, kinetic, negative);
 	if (regular || negative >= 0)

@@ -313,9 +313,11 @@ void solve_for_highest(struct building *b, struct segment_equations *s)
 /* ---- at the start ---- */
 
 /* The first of n rows whose pivot in L D L^T is below 0 by more than rounding of constants; -1: there is none, or M, n
- * x n in rows of `width`, is not symmetric. Constraints come last, rows without mass have no pivot. */
-static int negative_pivot(int n, int width, mpq_t *M)
+ * x n in rows of `width`, is not symmetric. Constraints come last, rows without mass have no pivot. *definite: each is
+ * above 0 by more than that. Digits are cut as they grow, else they would be as many as M has entries. */
+static int negative_pivot(int n, int width, mpq_t *M, bool *definite)
 {
+	*definite = false;
 	RATIONALS *rest = rationals((size_t)(n * n)), *size = rationals(n + 1);
 	RATIONAL part = ZERO;
 	for (int i = 0; i < n * n; i++) {
@@ -331,11 +333,14 @@ static int negative_pivot(int n, int width, mpq_t *M)
 		mpq_neg(part, rest[k * n + k]);
 		if (mpq_cmp(part, size[k]) > 0)
 			return k;
+		*definite = (k == 0 || *definite) && mpq_cmp(rest[k * n + k], size[k]) > 0;
 		for (int i = k + 1; i < n && mpq_sgn(part) < 0; i++) {
 			mpq_div(size[n], rest[i * n + k], rest[k * n + k]);
+			round_long(size[n]);
 			for (int j = k + 1; j < n; j++) {
 				mpq_mul(part, size[n], rest[k * n + j]);
 				mpq_sub(rest[i * n + j], rest[i * n + j], part);
+				round_long(rest[i * n + j]);
 			}
 			mpq_neg(part, rest[k * n + k]);
 		}
@@ -343,13 +348,14 @@ static int negative_pivot(int n, int width, mpq_t *M)
 	return -1;
 }
 
-int negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic)
+int negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic, bool *definite)
 {
+	*definite = false;
 	*kinetic = NULL;
 	for (int i = b->spec->lagrange.energies - 1; i >= 0; i--)
 		if (b->spec->lagrange.energy[i].kind == 'T')
 			*kinetic = &b->spec->lagrange.energy[i];
-	return *kinetic && b->spec->equations == 0 ? negative_pivot(n, width, M) : -1;
+	return *kinetic && b->spec->equations == 0 ? negative_pivot(n, width, M, definite) : -1;
 }
 
 void report_negative_mass(const struct building *b, const struct energy *kinetic, int coord)
@@ -375,15 +381,16 @@ static void check_mass_of(void *context)
 		round_long(value[i]);
 	}
 	const struct energy *kinetic;
+	bool definite;
 	int coords = 0;
 	while (coords < n && system->written->highest[coords].index < model->n)
 		coords++;
-	const int negative = negative_mass(work->b, coords, n, value, &kinetic);
+	const int negative = negative_mass(work->b, coords, n, value, &kinetic, &definite);
 	if (negative >= 0)
 		report_negative_mass(work->b, kinetic, system->written->highest[negative].index);
 	if (negative >= 0)
 		return;
-	if (rational_inverse(n, value, inverse, &column)) {
+	if ((definite && coords == n) || rational_inverse(n, value, inverse, &column)) {
 		work->mass->start = rationals_copied((size_t)(n * n), (const mpq_t *)value);
 		return;
 	}

@@ -17,7 +17,7 @@ bool has_highest(const struct building *b, const struct form *form, int coord);
 void solve_for_highest(struct building *b, struct segment_equations *s);
 /* The row of M, n x n in rows of `width`, by which T of energies is below 0, and the first T; -1: none */
 struct energy;
-int  negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic);
+int  negative_mass(const struct building *b, int n, int width, mpq_t *M, const struct energy **kinetic, bool *definite);
 void report_negative_mass(const struct building *b, const struct energy *kinetic, int coord);
 void check_mass_at_start(struct building *b);               /* that M is regular there */
 bool is_symmetric_mass(const struct linear_system *e);

@@ -204,7 +204,9 @@ static void build_series(struct step *step, int order)
 {
 	write_no_list(step);
 	step->program->compensated = true;
-	step->taylor.expansion = expansion_of(step, order ? order : economical_order(step));
+	order = order ? order : economical_order(step);
+	if (!step->taylor.expansion || step->taylor.expansion->order != order)
+		step->taylor.expansion = expansion_of(step, order);
 	step->series.emitted = true;
 }
 

@@ -234,34 +234,56 @@ static void drop_zeros(struct sum *sum)
 	sum->keys = count;
 }
 
-/* What is to be added to another to have it, and how many terms that has */
-static int difference(const struct sum *sum, const struct sum *other, struct sum *rest)
+/* The factor of a sequence; NULL: it is not there */
+static mpq_srcptr factor_in(const struct sum *sum, int sequence)
+{
+	for (int i = 0; i < sum->keys; i++)
+		if (sum->key[i].a == sequence)
+			return sum->key[i].factor;
+	return NULL;
+}
+
+/* How many terms has what is to be added to another to have it? */
+static int terms_between(const struct sum *sum, const struct sum *other)
+{
+	int terms = 0;
+	for (int i = 0; i < sum->keys; i++) {
+		mpq_srcptr factor = factor_in(other, sum->key[i].a);
+		terms += factor ? !mpq_equal(sum->key[i].factor, factor) : mpq_sgn(sum->key[i].factor) != 0;
+	}
+	for (int i = 0; i < other->keys; i++)
+		terms += mpq_sgn(other->key[i].factor) != 0 && !factor_in(sum, other->key[i].a);
+	return terms;
+}
+
+static struct sum difference(const struct sum *sum, const struct sum *other)
 {
 	RATIONAL minus = ZERO;
-	*rest = (struct sum){ 0 };
+	struct sum rest = { 0 };
 	for (int i = 0; i < sum->keys; i++)
-		sum_add(rest, TERM_SEQUENCE, sum->key[i].a, 0, sum->key[i].factor);
+		sum_add(&rest, TERM_SEQUENCE, sum->key[i].a, 0, sum->key[i].factor);
 	for (int i = 0; i < other->keys; i++) {
 		mpq_neg(minus, other->key[i].factor);
-		sum_add(rest, TERM_SEQUENCE, other->key[i].a, 0, minus);
+		sum_add(&rest, TERM_SEQUENCE, other->key[i].a, 0, minus);
 	}
-	drop_zeros(rest);
-	return rest->keys;
+	drop_zeros(&rest);
+	return rest;
 }
 
 static int shared_sum(struct sequencing *w, const struct sum *sum)
 {
 	RATIONAL one = RATIO(1, 1);
-	struct sum rest, all, made = { 0 };
-	int best = NONE, least = difference(sum, &made, &all) - 1;
+	struct sum made = { 0 }, all = difference(sum, &made);
+	int best = NONE, least = all.keys - 1;
 	for (int i = 0; i < w->shared; i++) {
-		const int terms = difference(sum, &w->share[i].sum, &rest);
+		const int terms = terms_between(sum, &w->share[i].sum);
 		best = terms < least ? i : best;
 		least = terms < least ? terms : least;
 	}
-	if (best != NONE && difference(sum, &w->share[best].sum, &rest) == 0)
+	if (best != NONE && least == 0)
 		return w->share[best].sequence;
 	if (best != NONE) {
+		const struct sum rest = difference(sum, &w->share[best].sum);
 		sum_add(&made, TERM_SEQUENCE, shared_sum(w, &rest), 0, one);
 		sum_add(&made, TERM_SEQUENCE, w->share[best].sequence, 0, one);
 	}

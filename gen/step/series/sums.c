@@ -31,9 +31,9 @@ static void add_numbers(struct sequencing *w, struct sequence *s, struct sequenc
 	RATIONAL number = ZERO;
 	term.slot = -1;
 	term.factor = ARRAY(double, w->x->order + 1);
-	for (; k <= last && k <= w->x->order; k++) {
-		mpq_mul(number, factor, scale[k]);
-		term.factor[k] = rounded(w, number);
+	for (int i = k; i <= last && i <= w->x->order; i++) {
+		mpq_mul(number, factor, scale[i]);
+		term.factor[i] = i > k && mpq_equal(scale[i], scale[i - 1]) ? term.factor[i - 1] : rounded(w, number);
 	}
 	*MORE(s->term, s->terms) = term;
 }
