@@ -270,7 +270,11 @@ static void find_obstacle(void *context)
 		add_elements(b, &b->nominal[s]);
 	const struct atom *atom = first_atom(b, false);
 	const bool held = atom && is_constant_system(atom);
-	const char *why = held ? "is a constraint" : "is not piecewise linear", *rewrite;
+	const bool kink = atom && atom->kind == ATOM_SOLUTION && atom->node->kind == NODE_CALL &&
+			  atom->node->function >= FN_ABS;
+	const char *why = held ? "is a constraint"
+			  : kink ? "has a kink in what equations are solved for"
+				 : "is not piecewise linear", *rewrite;
 	model->nonlinear.obstacle = atom ? atom->node : NULL;
 	for (int s = 1; s < model->system.segments && !model->nonlinear.obstacle; s++) {
 		model->nonlinear.obstacle = changing_factor(b, s);

@@ -68,15 +68,18 @@ static void text_of_series(FILE *to, const struct step *step)
 	const struct model *model = step->model;
 	const struct truncation *t = &model->truncation;
 	const char *tolerance = shortest(round_rational(t->tolerance));
+	const bool events = step->taylor.switching || step->taylor.expansion->contacts;
+	const char *every = events ? "Every step without an event" : "Every step";
 	if (t->adaptive)
 		fprintf(to, "A series reaches as far as its last two terms are below %s of the largest value of each "
 			    "state so far: %s, or a part of h, of which there are %d at most.\n", tolerance,
 			model->system.inputs ? "h" : "several h, whose states the one series gives", t->substeps);
 	else if (mpq_sgn(t->tolerance) != 0)
-		fprintf(to, "Every step does the same work; where the last two terms are above %s of the "
-			    "largest value of a state so far, %s_status says PL_INACCURATE.\n", tolerance, model->name);
+		fprintf(to, "%s does the same work; where the last two terms are above %s of the "
+			    "largest value of a state so far, %s_status says PL_INACCURATE.\n", every, tolerance,
+			model->name);
 	else
-		fputs("Every step does the same work, and nothing estimates its error.\n", to);
+		fprintf(to, "%s does the same work, and nothing estimates its error.\n", every);
 	text_floors(to, model);
 	if (t->over > 1)
 		fprintf(to, "One expansion is over %d steps, with the error of one of %d h; those before the last are "
