@@ -332,6 +332,7 @@ def alone(spec, u, **params):
 
 for name, spec, u, other in (('in lanes', ONE, record[:40, 0], {'m': 1.5}),
                              ('of a model with ramps', 'held.spec', record[:99], {}),
+                             ('with a peak', open('held.spec').read() + 'output largest = peak(x)\n', record[:99], {}),
                              ('of a model with loads', open('held.spec').read().replace('= push', '= push + sin(3*t)'),
                               record[:99], {}),
                              ('of a model that is not linear', BALL, 60, {})):
@@ -340,7 +341,7 @@ for name, spec, u, other in (('in lanes', ONE, record[:40, 0], {'m': 1.5}),
     single = [alone(spec, u, k=k, **other) for k in values[:4]]
     case('batch {}: each as it runs alone'.format(name), len(rows) == 80 and m.time == 0 and
          all(same(rows[j].copy(), single[j % 4][0]) for j in range(80)) and same(m.t, single[0][1]) and
-         bool(m._lanes) == (name in ('in lanes', 'of a model with ramps')), rows.shape, m._lanes,
+         bool(m._lanes) == (name in ('in lanes', 'of a model with ramps', 'with a peak')), rows.shape, m._lanes,
          np.abs(rows[1] - single[1][0]).max())
 m = Model('held.spec')
 m.run(record[:30])
@@ -397,6 +398,8 @@ off = np.abs(y - other).max(), np.abs(y - written).max()
 case('... and a run as of the same in SI units', max(off) < 1e-13 * np.abs(other).max(), off)
 rows = Model(SCALED).batch(record[:90, 0], {'k': [0.1, 0.25]})
 case('... and a batch', same(rows[1].copy(), y), np.abs(rows[1] - y).max())
+J, other = (Model(text).run(record[:90, 0], jac=['k', 'u'])[1][-1] for text in (SCALED, PLAIN))
+case('... and derivatives, those by k per N/mm, those by u per kN', np.allclose(J, other * [1000, 1], rtol=1e-12), J, other)
 m.params['m'] = 3
 case('... and when another param is compiled', m.params['k'] == 0.25 and np.allclose(m.explain['K'], 250), m.params)
 

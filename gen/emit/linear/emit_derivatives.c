@@ -509,7 +509,8 @@ static void emit_values_of_columns(const struct emitter *e)
 	for (int i = 0; i < d->columns; i++) {
 		const struct symbol *s = d->column[i].symbol;
 		const struct param_range *range = range_of_param(e->model, s);
-		by[4 * i + 1] = unit_factor(s->unit);
+		/* du is in the input's unit, as u is */
+		by[4 * i + 1] = s->kind == SYMBOL_INPUT ? 1 : unit_factor(s->unit);
 		if (s->kind == SYMBOL_PARAM) {
 			RATIONAL value = ZERO;
 			param_value(s, value);

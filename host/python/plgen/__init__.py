@@ -569,11 +569,11 @@ class Model(Linear, Derivatives):
         def room(*shape: int) -> np.ndarray:
             return np.empty(shape, dtype=self.dtype)
         count = len(params)
-        y, factors = (room(width, count) for width in self._widths)
+        y, factors, peak = (room(width, count) for width in (*self._widths, len(self.outputs)))
         now, out, status = room(count, len(self.outputs)), room(n, len(self.outputs), count), np.zeros(count, np.intc)
         u, params = None if u is None else np.ascontiguousarray(u), np.ascontiguousarray(params)
         self._lanes(count, n, params.ctypes.data, self._h,      # arrays that are there until the call returns
-                    *(None if x is None else x.ctypes.data for x in (u, first, y, factors, now, out, status)))
+                    *(None if x is None else x.ctypes.data for x in (u, first, y, factors, peak, now, out, status)))
         rows[:, 0], rows[:, 1:] = now, out.transpose(2, 0, 1)
         return not status.any()
 

@@ -230,7 +230,7 @@ size_t plgen_rows_d(void *s, void *ds, size_t n, const {real} *u, const {real} *
 # NAME_batch over `count` instances, each with params of its own; now: the outputs at the start, out: after each step
 LANES = """
 void plgen_lanes(size_t count, size_t n, const {real} *params, {real} h, const {real} *u, const {real} *first,
-                 {real} *y, {real} *factors, {real} *now, {real} *out, int *status)
+                 {real} *y, {real} *factors, {real} *peak, {real} *now, {real} *out, int *status)
 {{
     const size_t tuned = (size_t){name}_model.params, outputs = (size_t){name}_model.outputs;
     {name}_instances b = {{0}};
@@ -241,6 +241,7 @@ void plgen_lanes(size_t count, size_t n, const {real} *params, {real} h, const {
     b.count = count;
     b.y = y;
     b.factors = factors;
+    b.peak = peak;
     {name}_batch_init(&b);
     {name}_init(&s);
     {hold}
@@ -408,7 +409,7 @@ class Code:
         function = self._loaded(compiler, code).plgen_lanes
         p, size, real = ctypes.c_void_p, ctypes.c_size_t, ctypes.c_float if self.single else ctypes.c_double
         function.restype = None
-        function.argtypes = [size, size, p, real, p, p, p, p, p, p, p]
+        function.argtypes = [size, size, p, real, p, p, p, p, p, p, p, p]
         return function
 
 
