@@ -278,8 +278,8 @@ static struct node *read_call(struct parser *p, struct token name, enum function
 	if (name.primes > 0)
 		error(name.at, NULL, "a function has no derivative here: '%s'", name.name);
 	if (!is_op(p, "("))
-		error(name.at, NULL, "'%s' is a function: expected '(' after it, found %s", name.name,
-		      token_text(p->token));
+		error(name.at, format("%s(3*t)", name.name), "'%s' is a function: expected '(' after it, found %s",
+		      name.name, token_text(p->token));
 	nest(p, name.at);
 	struct place separator = take(p).at;
 	add_child(call, read_quantity(p), false, separator);

@@ -149,8 +149,10 @@ const char *habit_note(const struct parser *p, struct token name, is_coordinate 
 		return is_sign(p, '^') ? format("the exponential is a function: exp(%s)",
 					      exponent_text(p->token.at.source->text + p->token.at.offset))
 				     : "the exponential is a function: exp(1) is this number";
-	if (strcmp(name.name, "time") == 0)
+	if (strcasecmp(name.name, "time") == 0 || strcmp(name.name, "T") == 0)
 		return "time is t";
+	if (is_sign(p, '=') && name.at.offset == p->statement)
+		return format("a constant is a param: param %s = 1", name.name);
 	return call ? function_note(name.name) : NULL;
 }
 

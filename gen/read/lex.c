@@ -162,9 +162,23 @@ static bool stands_before(const struct token *token, int bytes)
 	return false;
 }
 
-static const char *character_note(const char *text)
+/* Of x^2' and of (m*x)' */
+static const char *prime_note(const char *start, const char *text)
 {
-	if (strncmp(text, "\xe2\x80\x99", 3) == 0 || strncmp(text, "\xe2\x80\xb2", 3) == 0)
+	const char *power = text;
+	while (power > start && strchr("0123456789", power[-1]))
+		power--;
+	if (power < text && power > start && power[-1] == '^')
+		return "a power of a derivative: x'^2";
+	if (text > start && text[-1] == ')')
+		return "an expression that is derived is a let: let f = ..., and f'";
+	return "a prime follows the name of a coordinate without space: x'";
+}
+
+static const char *character_note(const char *start, const char *text)
+{
+	if (strncmp(text, "\xe2\x80\x99", 3) == 0 || strncmp(text, "\xe2\x80\xb2", 3) == 0 ||
+	    strncmp(text, "\xc2\xb4", 2) == 0 || text[0] == '`')
 		return "the derivative is written with the plain quote: x'";
 	if (strncmp(text, "\xe2\x80\x9d", 3) == 0 || strncmp(text, "\xe2\x80\xb3", 3) == 0)
 		return "the second derivative is written with two plain quotes: x''";
@@ -177,12 +191,14 @@ static const char *character_note(const char *text)
 	if (strncmp(text, "\xc2\xb7", 2) == 0 || strncmp(text, "\xc3\x97", 2) == 0)
 		return "multiplication is written with *";
 	if (text[0] == '\'')
-		return "a prime follows the name of a coordinate without space: x'";
+		return prime_note(start, text);
 	if (text[0] == '|')
 		return text[1] == '|' ? "conditions stand inside each other: x < 0 ? 1 : (x > 2 ? 1 : 0)"
 				      : "the size of a value is written abs(x)";
 	if (text[0] == '&')
 		return "conditions stand inside each other: x > 0 ? (x < 2 ? 1 : 0) : 0";
+	if (text[0] == '%' && text > start && strchr("0123456789", text[-1]))
+		return "5 % is 0.05";
 	if (text[0] == '%')
 		return "a comment starts with #";
 	if (strncmp(text, "\xcf\x80", 2) == 0)
@@ -227,7 +243,7 @@ static void lex_operator(struct token *token, const char *text, bool needs)
 		error(token->at, NULL, "unexpected byte 0x%02x", (unsigned char)text[0]);
 	if (greek_name(text) && stands_before(token, bytes))
 		abandon();
-	error(token->at, character_note(text), "unexpected character '%.*s'", bytes, text);
+	error(token->at, character_note(token->at.source->text, text), "unexpected character '%.*s'", bytes, text);
 }
 
 struct token lex_next(struct lexer *lexer)

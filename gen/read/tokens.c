@@ -61,12 +61,18 @@ static const char *stray_note(const struct parser *p)
 	bool word = after_operand && p->token.kind == TOKEN_NAME && !find_symbol(p, p->token.name);
 	const char *form = statement_form(p);
 	const char *unit = word ? stray_unit_note(p) : NULL;
+	if (p->token.kind == TOKEN_STRING && form && strncmp(form, "input", 5) == 0)
+		return "a unit stands behind the name: input u \"N\" hold first";
+	if (p->token.kind == TOKEN_STRING && p->lexer.source->text[p->end.offset - 1] == ']')
+		return "a unit stands behind each number: [9 \"N\", 20 \"N\"]";
 	if (p->token.kind == TOKEN_STRING && after_operand)
 		return "a unit stands behind a whole value, at its end or in a bracket: (9.81 \"m/s^2\")";
 	if (decimal_comma(p))
 		return "the decimal mark is the point: 1.5";
 	if (p->goes_on && p->goes_on(p))
 		return "a statement ends at the end of its line, unless a bracket is open there";
+	if (memchr(p->lexer.source->text + p->end.offset, '\r', p->token.at.offset - p->end.offset))
+		return "lines end with a line feed: this one ends with a carriage return alone";
 	if (opens_comment(p))
 		return "a comment starts with #";
 	if (unit)
@@ -236,6 +242,25 @@ static bool names_coordinate(const struct parser *p, const char *name)
 	return symbol && symbol->kind == SYMBOL_COORD;
 }
 
+/* kx of k and x; or NULL */
+static const char *product_note(const struct parser *p, const char *name)
+{
+	for (size_t i = 1; i < strlen(name); i++)
+		if (find_symbol(p, format("%.*s", (int)i, name)) && find_symbol(p, name + i) &&
+		    strncmp(name, name + i, i) != 0)
+			return format("multiplication is written with *: %.*s*%s", (int)i, name, name + i);
+	return NULL;
+}
+
+/* Is the unknown name in a line of a spec that begins as no statement does: with it, a known name, a number, a sign? */
+static bool is_in_equation(const struct parser *p, struct token token)
+{
+	const char *text = p->lexer.source->text + p->statement;
+	const size_t word = strspn(text, WORD);
+	return p->goes_on && (token.at.offset == p->statement || word == 0 ||
+			      find_symbol(p, format("%.*s", (int)word, text)));
+}
+
 _Noreturn void unknown_name(struct parser *p, struct token token)
 {
 	if (declared_later(p, token.name))
@@ -252,8 +277,11 @@ _Noreturn void unknown_name(struct parser *p, struct token token)
 	const char *note = part_note(p, token.name), *habit = habit_note(p, token, names_coordinate);
 	if (!note && !habit && lacks_coordinates(p, token))
 		missing_coordinates(p, token);
-	error(token.at, note ? note : habit ? habit : spec_suggestion(p->spec, token.name), "unknown name '%s'",
-	      token.name);
+	note = note ? note : habit ? habit : product_note(p, token.name);
+	note = note ? note : spec_suggestion(p->spec, token.name);
+	if (!note && is_in_equation(p, token) && token.primes == 0 && !is_op(p, "("))
+		note = format("a constant is a param: param %s = 1", token.name);
+	error(token.at, note, "unknown name '%s'", token.name);
 }
 
 struct list_line {

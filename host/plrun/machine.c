@@ -238,6 +238,7 @@ const char *instance_retune(struct instance *i, const double *params, double h)
 	return status == 0 ? NULL
 	     : status == PL_NO_STEP ? "the step is not above 0"
 	     : status == PL_NO_RATE ? "with these values a load's frequency is below 0"
+	     : status == PL_OUT_OF_RANGE && !m->crossed ? "outside of the range that the spec gives"
 	     : status == PL_OUT_OF_RANGE
 	     ? "these values are outside of the ranges that the spec gives, or make other regions: a restitution not "
 	       "within 0 and 1, a gap or a force of friction below 0, breakpoints in another order"

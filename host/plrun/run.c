@@ -343,7 +343,9 @@ static char *tuning_error(const struct job *job, struct instance *s)
 	for (int k = 0; k < m->params && !error && !instance_retune(s, m->param_values, job->h); k++) {
 		memcpy(one, m->param_values, sizeof *one * (size_t)m->params);
 		one[k] = job->params[k];
-		error = instance_retune(s, one, job->h) ? format("%s: %s", m->param_names[k], wrong) : NULL;
+		if (instance_retune(s, one, job->h))
+			error = format("%s = %s: %s", m->param_names[k],
+				       shortest(one[k] / param_value(m, k, 1), false), wrong);
 	}
 	free(one);
 	return error ? error : format("%s", wrong);

@@ -163,6 +163,10 @@ paste -d, fixed.csv tuned.csv | awk -F, '
 		exit bad || NR != 5 || head != names "," names || !(last > 50 && last < 70) }' &&
 	[ "$(tail -n 1 rows.csv | cut -d, -f 2)" = "$(tail -n 1 tuned.csv | cut -d, -f 3)" ]
 result $? 'params in their own units, tunable or not; names with units'
+sed 's/k, L$/k in [9 "kN\/m", 20 "kN\/m"]/' tuned.spec >bound.spec
+run bound.spec 0.1 --sweep k=18:22:2 >log
+grep -q ',failed: k = 22: outside of the range that the spec gives$' log
+result $? 'a value outside of its range is named'
 
 # ---- statistics of one run, against those of its rows ----
 run car.spec --input road.csv >rows.csv
