@@ -108,7 +108,7 @@ struct dimension of_symbol(const struct dimensions *w, const struct symbol *s, i
 
 struct dimension of_name(const struct dimensions *w, const struct node *node)
 {
-	struct dimension d = of_symbol(w, node->symbol, node->component);
+	struct dimension d = of_symbol(w, node->let ? node->let : node->symbol, node->component);
 	RATIONAL primes = RATIO(node->primes, 1);
 	if (d.kind == GIVEN)
 		mpq_sub(d.base[SECOND], d.base[SECOND], primes);
@@ -134,7 +134,7 @@ void add_term(struct group *group, const struct node *node, const char *text, st
 /* The terms of a sum, those of brackets in it among them */
 void add_terms(struct dimensions *w, int group, const struct node *node)
 {
-	if (node->kind == NODE_SUM && !node->unit) {
+	if (node->kind == NODE_SUM && !node->unit && !node->let) {
 		for (int i = 0; i < node->children; i++)
 			add_terms(w, group, node->child[i]);
 		return;
@@ -328,6 +328,8 @@ static struct dimension of_node(struct dimensions *w, const struct node *node)
 {
 	if (node->unit)
 		return of_quantity(w, node);
+	if (node->let)
+		return of_name(w, node);
 	switch (node->kind) {
 	case NODE_TIME: {
 		struct dimension time = dimension_of_time(1);

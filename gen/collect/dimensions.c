@@ -303,17 +303,18 @@ static const char *dimension_text(const struct dimension *d)
 /* The names in a term with their units, each once: k: N/m, x': m/s */
 static void list_names(const struct dimensions *w, const struct node *node, const char **list, bool *literal)
 {
-	const int looked_at = node->kind == NODE_POWER ? 1 : node->children;
+	const struct symbol *symbol = node->let ? node->let : node->symbol;
+	const int looked_at = symbol ? 0 : node->kind == NODE_POWER ? 1 : node->children;
 	for (int i = 0; i < looked_at && !(node->unit && node->counted); i++)
 		list_names(w, node->child[i], list, literal);
 	*literal = *literal || (node->kind == NODE_NUMBER && node->end.offset > node->start.offset);
-	if (node->kind != NODE_NAME)
+	if (!symbol)
 		return;
 	struct dimension d = of_name(w, node);
-	const char *name = state_text(node->symbol, node->component, node->primes), *entry;
+	const char *name = state_text(symbol, node->component, node->primes), *entry;
 	entry = d.kind == SILENT || d.parts ? format("%s: not known", name)
-		: node->symbol->unit_written
-			? format("%s: %s", name, unit_of_derivative(node->symbol->unit, node->primes)->text)
+		: symbol->unit_written
+			? format("%s: %s", name, unit_of_derivative(symbol->unit, node->primes)->text)
 			: format("%s: %s", name, unit_text(&d));
 	if (!strstr(format(", %s,", *list), format(", %s,", entry)))
 		*list = format("%s%s%s", *list, **list ? ", " : "", entry);

@@ -87,6 +87,16 @@ struct node *read_quantity(struct parser *p)
 
 #define NO_ACCELERATION "what a component is given may use coordinates and their first derivatives"
 
+/* Its primes give it the dimension of the let's over time: a number in a factor of t has none. */
+static struct node *inlined_derivative(struct node *derivative, const struct symbol *let, int primes, struct place at,
+				       struct place end)
+{
+	struct node *node = inlined(derivative, at, end);
+	node->let = let;
+	node->primes = primes;
+	return node;
+}
+
 /* What a name stands for, where that is an expression: an output of a part, the slope of a connected input */
 static struct node *read_inlined(struct parser *p, const struct symbol *symbol, struct token token)
 {
@@ -94,7 +104,7 @@ static struct node *read_inlined(struct parser *p, const struct symbol *symbol, 
 		struct node *slope = slope_of(symbol->value, symbol->value->start);
 		if (has_acceleration(slope))
 			error(symbol->value->start, NULL, "its slope is read, and holds an acceleration");
-		return inlined(slope, token.at, p->end);
+		return inlined_derivative(slope, symbol, 1, token.at, p->end);
 	}
 	if (token.primes > 0)
 		error(token.at, "only coordinates have derivatives", "output '%s' has no derivative", token.name);
@@ -155,7 +165,7 @@ static struct node *read_derivative(const struct parser *p, const struct symbol 
 		derivative = slope_of(derivative, token.at);
 	if (p->no_acceleration && has_acceleration(derivative))
 		error(token.at, NO_ACCELERATION, "an acceleration is given to a component");
-	return inlined(derivative, token.at, p->end);
+	return inlined_derivative(derivative, let, token.primes, token.at, p->end);
 }
 
 /* ---- energy, power and momentum(q) in outputs: lets, whose values fill_totals() gives ---- */

@@ -99,6 +99,7 @@ struct node {
 	bool *inverse;              /* of SUM and PRODUCT, one per child */
 	bool each;                  /* of PRODUCT: of vectors component by component */
 	bool unexpanded;            /* of PRODUCT and CHOOSE: one factor of a remainder */
+	const struct symbol *let;   /* of a SUM of one child, which is the derivative of this; else NULL */
 	const struct node *follows; /* of friction: it is the derivative of this one, and acts where that does */
 	struct place *operator;     /* of SUM and PRODUCT: the sign before each child */
 	const struct unit *unit;    /* of a SUM of one child: what stands behind it; else NULL */

@@ -400,6 +400,8 @@ rows = Model(SCALED).batch(record[:90, 0], {'k': [0.1, 0.25]})
 case('... and a batch', same(rows[1].copy(), y), np.abs(rows[1] - y).max())
 J, other = (Model(text).run(record[:90, 0], jac=['k', 'u'])[1][-1] for text in (SCALED, PLAIN))
 case('... and derivatives, those by k per N/mm, those by u per kN', np.allclose(J, other * [1000, 1], rtol=1e-12), J, other)
+os.symlink('nowhere', os.path.join(os.environ['XDG_CACHE_HOME'], 'plgen', 'making.gone'))
+case('a folder of the cache that has gone since it was listed', len(Model(SCALED, m=7).run(record[:4, 0])) == 5)
 m.params['m'] = 3
 case('... and when another param is compiled', m.params['k'] == 0.25 and np.allclose(m.explain['K'], 250), m.params)
 

@@ -2,6 +2,7 @@
 """What stands behind a Model: plgen, the compiler, the cache, and the code that they make."""
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import difflib
 import hashlib
@@ -184,8 +185,9 @@ class Compiler:
         finally:
             shutil.rmtree(work, ignore_errors=True)
         for left in os.scandir(cache):          # of what was killed: after a day nobody works there
-            if left.name.startswith('making.') and left.stat().st_mtime < time.time() - 86400:
-                shutil.rmtree(left.path, ignore_errors=True)
+            with contextlib.suppress(FileNotFoundError):        # another process has ended there since
+                if left.name.startswith('making.') and left.stat().st_mtime < time.time() - 86400:
+                    shutil.rmtree(left.path, ignore_errors=True)
         return path
 
 
