@@ -272,6 +272,7 @@ static struct need_input read_need_input(struct parser *p)
 /* need: need output within expression [ % ] until expression [ for |NAME| <= expression { , ... } ] */
 void read_need(struct parser *p)
 {
+	enum { LIMIT_NEEDS = 1000 };
 	struct need need = { .at = last_token(p, 4), .output_at = p->token.at };
 	p->lexer.needs = true;
 	need.output = read_output_name(p);
@@ -292,6 +293,10 @@ void read_need(struct parser *p)
 	}
 	expect_end(p);
 	*MORE(p->own->required.need, p->own->required.needs) = need;
+	if (p->own->required.needs == LIMIT_NEEDS + 1)
+		error(need.at, "the strictest of an output is enough", "needs over the limit of %d", LIMIT_NEEDS);
+	if (p->own->required.needs > LIMIT_NEEDS)
+		abandon();                      /* reported once */
 }
 
 /* budget: budget expression instructions on TARGET [for the worst step]; a target has hyphens in its name */

@@ -25,7 +25,8 @@ void text_nonlinear(FILE *to, const struct step *step)
 {
 	fprintf(to, "The model is not linear, so it has no poles, mode shapes, frequency responses and static gains. "
 		    "They would leave out:\n    %s\n", nonlinear_text(step));
-	fputs("--at rest has those of the linear equations at an equilibrium.\n", to);
+	if (!facts_of_model(step->shown->model).contacts)
+		fputs("--at rest has those of the linear equations at an equilibrium.\n", to);
 	if (can_be_swept(step))
 		fputs("--response F0:F1 --amplitude A sweeps through all regions.\n", to);
 }

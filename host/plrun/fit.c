@@ -410,8 +410,10 @@ static void say_cost(const struct fit *f)
 	for (int i = 0; i < f->unknowns; i++)
 		if (f->unknown[i].state < 0 && f->unknown[i].param < 0)
 			wanted = format("%s%s%s", wanted, *wanted ? ", " : "", f->unknown[i].name);
-	say_note(format("%zu evaluations%s", f->evaluations,
-			f->compiled ? format(", the model compiled for each; `tunable %s` spares that", wanted) : ""));
+	/* regions that tunable params change have no derivatives */
+	const char *way_out = f->machine->crossed ? "" : format("; `tunable %s` spares that", wanted);
+	say_note(format("%zu evaluations%s%s", f->evaluations, f->compiled ? ", the model compiled for each" : "",
+			f->compiled ? way_out : ""));
 }
 
 /* Held: what has come to an end of its range, while less than that is left over beyond */
