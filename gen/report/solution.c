@@ -141,8 +141,8 @@ static bool print_with(struct printing *p, int precision)
 	return reported;
 }
 
-/* The bits that what was lost so far says all rows take: widths double at impacts, and where the motion spreads, so
- * that bits go with the time. Where more of them brought no row, twice as many. */
+/* The bits that what was lost so far says all rows take: widths grow where the motion spreads, so that bits go with the
+ * time. Where more of them brought no row, twice as many. */
 static int more_bits(const struct printing *p, int bits, unsigned long rows_before, int bits_before)
 {
 	if (bits_before == 0 || p->rows <= rows_before)

@@ -14,6 +14,13 @@ void trajectory_row(const struct trajectory *t, const struct output *output, mpq
 	row_of_output(&t->layout, t->system, output, t->when.segments, t->when.segment, row);
 }
 
+mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output)
+{
+	mpq_t *row = rationals(t->n);
+	trajectory_row(t, output, row);
+	return row;
+}
+
 void trajectory_dot(const struct trajectory *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum)
 {
 	INTERVAL part = OVER_BITS(t->precision);

@@ -4,6 +4,7 @@
  * event, also where states come together; these widths are those of the motion (R. Lohner, Computation of guaranteed
  * enclosures for the solutions of ordinary initial and boundary value problems, in: Computational ordinary differential
  * equations, Oxford 1992). */
+#include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
 #include "model/regions/switching_functions.h"
 #include "trajectory.h"
@@ -31,6 +32,8 @@ void deviation_make(struct trajectory *t)
 	d->core = enclosures(t->n, t->precision);
 	d->next_core = enclosures(t->n, t->precision);
 	d->next_x = enclosures(t->n, t->precision);
+	d->before = enclosures(t->n, t->precision);
+	d->jump = rationals((size_t)(t->n * t->n));
 	d->now = new_turned_box(t->n);
 	d->next = new_turned_box(t->n);
 	d->map = new_map(t->n);
@@ -42,6 +45,8 @@ void deviation_free(struct trajectory *t)
 	clear_intervals(&t->deviation->core);
 	clear_intervals(&t->deviation->next_core);
 	clear_intervals(&t->deviation->next_x);
+	clear_intervals(&t->deviation->before);
+	rationals_free(t->deviation->jump, (size_t)(t->n * t->n));
 	series_room_free(&t->deviation->room);
 }
 
@@ -343,12 +348,87 @@ static double bend_within(const struct trajectory *t, const struct guard *guard,
 {
 	SCRATCH double *x = ARRAY(double, t->n);
 	for (int i = 0; i < t->n; i++)
-		x[i] = fabs(mpfi_get_d(t->x[i])) * (1 + rounding);
+		x[i] = fabs(mpfi_get_d(t->deviation->before[i])) * (1 + rounding);
 	return 2 * off * rates * rates * scaled(f, x, false) * scaled(f, guard->near_row, true);
 }
 
-/* The derivative of what a crossing makes of a state: I - (A_before - A_after) x row / slope, the jump matrix; what it
- * is off by the time `off`, of first order in that. False: its speed is not known well enough. */
+void deviation_begin(struct trajectory *t)
+{
+	struct deviation *d = t->deviation;
+	for (int i = 0; i < t->n; i++)
+		mpfi_set(d->before[i], t->x[i]);
+	for (int k = 0; k < t->n * t->n; k++)
+		mpq_set_ui(d->jump[k], k / t->n == k % t->n, 1);
+	d->jumps = 0;
+}
+
+enum { MOST_JUMPS = 64 };               /* each makes the numbers of those before it longer */
+
+void deviation_assign(struct trajectory *t, int count, const int *state, mpq_t *const *row)
+{
+	struct deviation *d = t->deviation;
+	const int n = t->n;
+	SCRATCH mpq_t **next = ARRAY(mpq_t *, (size_t)count + 1);
+	if (count == 0 || (d->jumps += count) > MOST_JUMPS)
+		return;
+	for (int k = 0; k < count; k++)
+		next[k] = trajectory_times(t, row[k], (const mpq_t *)d->jump);
+	for (int k = 0; k < count; k++) {
+		for (int j = 0; j < n; j++)
+			mpq_set(d->jump[state[k] * n + j], next[k][j]);
+		rationals_free(next[k], (size_t)n);
+	}
+}
+
+/* y = jump x */
+static void take_jump(const struct trajectory *t, const mpfi_t *x, mpfi_t *y)
+{
+	for (int i = 0; i < t->n; i++)
+		trajectory_dot(t, (const mpq_t *)t->deviation->jump + i * t->n, x, y[i]);
+}
+
+/* What is held behind it has the width of what it is held by: none where that is a number. */
+static void hold_map(struct trajectory *t)
+{
+	struct map *map = &t->deviation->map;
+	const struct region *r = &t->s->region[t->region];
+	const int n = t->n;
+	const size_t room = (size_t)(r->holds * n) + 1;
+	SCRATCH double *entry = ARRAY(double, room), *slack = ARRAY(double, room);
+	for (int k = 0; k < r->holds; k++) {
+		RATIONALS *row = trajectory_row_of(t, r->hold[k].row);
+		for (int i = 0; i < n; i++) {
+			const double by = mpq_get_d(row[i]);
+			for (int j = 0; j < n && by != 0; j++) {
+				entry[k * n + j] += by * map->entry[i * n + j];
+				slack[k * n + j] += fabs(by) * (1 + rounding) *
+						    (map->slack[i * n + j] + rounding * fabs(map->entry[i * n + j]));
+			}
+		}
+	}
+	for (int k = 0; k < r->holds; k++) {
+		const size_t to = (size_t)(r->hold[k].state * n);
+		memcpy(map->entry + to, entry + k * n, (size_t)n * sizeof *entry);
+		memcpy(map->slack + to, slack + k * n, (size_t)n * sizeof *slack);
+	}
+}
+
+/* The norm of the jump in the scales D, at least 1 */
+static double norm_of_jump(const struct trajectory *t, const struct stream *f)
+{
+	double norm = 1;
+	for (int i = 0; i < t->n; i++) {
+		double sum = 0;
+		for (int j = 0; j < t->n; j++)
+			sum += fabs(mpq_get_d(t->deviation->jump[i * t->n + j])) * f->scale[j] / f->scale[i];
+		norm = fmax(norm, sum * (1 + rounding));
+	}
+	return norm;
+}
+
+/* The derivative of what an event makes of a state by its jump R: R - (R A_before - A_after R) x row / slope, the jump
+ * matrix of a crossing, whose R is the identity; what it is off by the time `off`, of first order in that. False: its
+ * speed is not known well enough. */
 static bool jump_matrix(struct trajectory *t, const struct guard *guard, const struct stream *before,
 			mpfi_srcptr slope, double off)
 {
@@ -356,33 +436,64 @@ static bool jump_matrix(struct trajectory *t, const struct guard *guard, const s
 	const struct stream *after = t->at->flow;
 	const int n = t->n;
 	INTERVALS *old = enclosures(n, t->precision), *new = enclosures(n, t->precision);
+	INTERVALS *y = enclosures(n, t->precision);
 	REAL width = WITH_BITS(64);
 	SCRATCH double *jump = ARRAY(double, n), *wide = ARRAY(double, n);
 	SCRATCH double *row = ARRAY(double, n), *x = ARRAY(double, n);
-	const double speed = mpfi_get_d(slope), rates = stream_rates(before, after);
+	const double speed = mpfi_get_d(slope), rates = stream_rates(before, after), norm = norm_of_jump(t, before);
 	mpfi_diam_abs(width, slope);
 	const bool known = !mpfi_has_zero(slope) && mpfr_get_d(width, MPFR_RNDU) < 1e-14 * fabs(speed) &&
 			   off * rates < 1e-14;
-	stream_slope(before, t->x, old);
-	stream_slope(after, t->x, new);
+	stream_slope(before, d->before, new);
+	take_jump(t, (const mpfi_t *)new, old);
+	take_jump(t, (const mpfi_t *)d->before, y);
+	stream_slope(after, y, new);
 	for (int i = 0; i < n && known; i++) {
 		mpfi_sub(old[i], old[i], new[i]);
 		jump[i] = mpfi_get_d(old[i]);
 		mpfi_diam_abs(width, old[i]);
 		wide[i] = mpfr_get_d(width, MPFR_RNDU);
 		row[i] = guard->near_row[i] / speed;
-		x[i] = mpfi_get_d(t->x[i]);
+		x[i] = mpfi_get_d(d->before[i]);
 	}
 	const double turned = 8 * off * rates *
-			      (1 + 2 * (scaled(before, jump, false) + rates * scaled(before, x, false)) *
-					   scaled(before, row, true));
+			      (norm + 2 * (scaled(before, jump, false) + rates * norm * scaled(before, x, false)) *
+					      scaled(before, row, true));
 	for (int i = 0; i < n && known; i++)
 		for (int j = 0; j < n; j++) {
-			const double entry = jump[i] * row[j];
-			d->map.entry[i * n + j] = (i == j) - entry;
-			d->map.slack[i * n + j] = rounding * ((i == j) + fabs(entry)) + 2 * wide[i] * fabs(row[j]) +
+			const double entry = jump[i] * row[j], kept = mpq_get_d(d->jump[i * n + j]);
+			d->map.entry[i * n + j] = kept - entry;
+			d->map.slack[i * n + j] = rounding * (fabs(kept) + fabs(entry)) + 2 * wide[i] * fabs(row[j]) +
 					      turned * before->scale[i] / before->scale[j];
 		}
+	if (known)
+		hold_map(t);
+	return known;
+}
+
+/* The core behind it, when it is met there */
+static bool core_behind(struct trajectory *t, const struct stream *before, mpfi_ptr when)
+{
+	struct deviation *d = t->deviation;
+	const struct region *r = &t->s->region[t->region];
+	if (d->jumps == 0) {
+		for (int i = 0; i < t->n; i++)
+			mpfi_set(d->next_core[i], d->core[i]);
+		return stream_change_within(before, t->at->flow, when, d->next_core);
+	}
+	INTERVALS *x = enclosures(t->n, t->precision);
+	for (int i = 0; i < t->n; i++)
+		mpfi_set(x[i], d->core[i]);
+	bool known = stream_change_within(before, NULL, when, x);
+	take_jump(t, (const mpfi_t *)x, d->next_core);
+	mpfi_neg(when, when);
+	known = stream_change_within(t->at->flow, NULL, when, d->next_core) && known;
+	for (int k = 0; k < r->holds; k++) {
+		RATIONALS *row = trajectory_row_of(t, r->hold[k].row);
+		trajectory_dot(t, row, (const mpfi_t *)d->next_core, x[r->hold[k].state]);
+	}
+	for (int k = 0; k < r->holds; k++)
+		mpfi_set(d->next_core[r->hold[k].state], x[r->hold[k].state]);
 	return known;
 }
 
@@ -392,18 +503,18 @@ bool deviation_cross(struct trajectory *t, const struct guard *guard, const stru
 	INTERVAL slope = OVER_BITS(t->precision), when = OVER_BITS(t->precision);
 	REAL bend = WITH_BITS(64);
 	const double most = mpfr_get_d(off, MPFR_RNDU);
-	trajectory_dot(t, guard->slope, t->x, slope);
+	if (d->jumps > MOST_JUMPS)
+		return false;
+	trajectory_dot(t, guard->slope, (const mpfi_t *)d->before, slope);
 	mpfr_set_d(bend, bend_within(t, guard, before, stream_rates(before, t->at->flow), most), MPFR_RNDU);
 	mpfi_increase(slope, bend);
 	bool known = jump_matrix(t, guard, before, slope, most);
 	if (known) {
 		/* when the core meets it, by the mean value theorem */
-		trajectory_dot(t, guard->row, d->core, when);
+		trajectory_dot(t, guard->row, (const mpfi_t *)d->core, when);
 		mpfi_q_sub(when, guard->limit, when);
 		mpfi_div(when, when, slope);
-		for (int i = 0; i < t->n; i++)
-			mpfi_set(d->next_core[i], d->core[i]);
-		known = stream_change_within(before, t->at->flow, when, d->next_core);
+		known = core_behind(t, before, when);
 	}
 	if (known) {
 		take_map(t, &d->map);

@@ -25,8 +25,9 @@ int  trajectory_sign(const struct trajectory *t, const mpq_t *row, mpq_srcptr le
 /* Whether all of an enclosure is 0 to half of the bits, BITS_OF_ONE or fewer, of such a size, or of 2^-64 */
 bool trajectory_is_none(const struct trajectory *t, mpfi_srcptr value, double size);
 double trajectory_size(const struct trajectory *t, const mpq_t *row); /* what row . x may be summed from */
-mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output);
 bool trajectory_unknown(struct trajectory *t, const char *what); /* false */
+/* States, all from the same state, by rows over x */
+void trajectory_assign(struct trajectory *t, int count, const int *state, mpq_t *const *row);
 void trajectory_hold(struct trajectory *t);                  /* states that the region gives */
 /* The side to which a switching function on a breakpoint moves in a region, by its first derivative that is not 0;
  * still: its first one is but rounding */

@@ -284,13 +284,12 @@ static real press_of(const contacts *m, const instant *t, int k)
 	return trajectory_heads(t, t->at, b->expression, true, &known) == (b->upward ? 1 : -1) ? DBL_MIN : 0;
 }
 
-/* The states of so many assignments, all from the same state */
 static void assign(struct trajectory *t, int count, const struct jump *jump, mpq_t *const *row)
 {
+	SCRATCH int *state = ARRAY(int, (size_t)count + 1);
 	for (int k = 0; k < count; k++)
-		trajectory_dot(t, row[k], t->x, t->y[jump[k].state]);
-	for (int k = 0; k < count; k++)
-		mpfi_set(t->x[jump[k].state], t->y[jump[k].state]);
+		state[k] = jump[k].state;
+	trajectory_assign(t, count, state, row);
 }
 
 static void jump(const contacts *m, instant *t, int k)

@@ -43,6 +43,7 @@ struct errors errors_of(const struct step *step, const struct requirement *r);
 /* ---- trajectory.c: a piecewise-linear model through its crossings, enclosed ---- */
 
 void trajectory_state(const struct trajectory *t, int state, mpfi_ptr value);  /* where it has got to */
+void trajectory_widen(struct trajectory *t, int state, mpfr_srcptr off); /* which may be so much another one */
 void trajectory_limit(struct trajectory *t, int most);      /* crossings; what comes behind them is not decided */
 
 /* ---- passing.c: the same through crossings ---- */

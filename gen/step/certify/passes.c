@@ -278,17 +278,18 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 	bool known = shorten_base(t, before, off);
 	t->piece.at_once = mpq_sgn(part) == 0 ? t->piece.at_once + 1 : 0;
 	trajectory_note(t, guard, off);
+	deviation_begin(t);
 	if (guard->impact >= 0) {
 		mpfi_clear(t->noted.list[--t->noted.count].at);    /* its impact is noted again */
 		known = known && trajectory_impact(t, guard, off);
 	} else {
 		trajectory_enter(t, t->region + guard->leads);
-		crossed = known && !has_events(t->s) && deviation_cross(t, guard, before, off);
-		known = known && (crossed || stream_change(before, t->at->flow, off, t->x));
+		known = known && stream_change(before, t->at->flow, off, t->x);
 		if (has_events(t->s))
 			known = known && resolve(t, guard, off);
 	}
 	trajectory_hold(t);
+	crossed = known && deviation_cross(t, guard, before, off);
 	trajectory_loads(t);
 	(crossed ? deviation_loads : deviation_renew)(t);
 	if (!known)

@@ -43,26 +43,27 @@ int trajectory_sign(const struct trajectory *t, const mpq_t *row, mpq_srcptr les
 	return sign;
 }
 
-mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output)
+void trajectory_assign(struct trajectory *t, int count, const int *state, mpq_t *const *row)
 {
-	mpq_t *row = rationals(t->n);
-	trajectory_row(t, output, row);
-	return row;
-}
-
-static void trajectory_assign(struct trajectory *t, int state, const struct output *output, mpfi_t *fresh)
-{
-	RATIONALS *row = trajectory_row_of(t, output);
-	trajectory_dot(t, row, t->x, fresh[state]);
+	for (int k = 0; k < count; k++)
+		trajectory_dot(t, row[k], t->x, t->y[state[k]]);
+	for (int k = 0; k < count; k++)
+		mpfi_set(t->x[state[k]], t->y[state[k]]);
+	deviation_assign(t, count, state, row);
 }
 
 void trajectory_hold(struct trajectory *t)
 {
 	const struct region *r = &t->s->region[t->region];
+	SCRATCH int *state = ARRAY(int, (size_t)r->holds + 1);
+	SCRATCH mpq_t **row = ARRAY(mpq_t *, (size_t)r->holds + 1);
+	for (int k = 0; k < r->holds; k++) {
+		state[k] = r->hold[k].state;
+		row[k] = trajectory_row_of(t, r->hold[k].row);
+	}
+	trajectory_assign(t, r->holds, state, row);
 	for (int k = 0; k < r->holds; k++)
-		trajectory_assign(t, r->hold[k].state, r->hold[k].row, t->y);
-	for (int k = 0; k < r->holds; k++)
-		mpfi_set(t->x[r->hold[k].state], t->y[r->hold[k].state]);
+		rationals_free(row[k], (size_t)t->n);
 }
 
 bool trajectory_unknown(struct trajectory *t, const char *what)

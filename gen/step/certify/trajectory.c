@@ -217,6 +217,12 @@ const char *trajectory_undecided(const struct trajectory *t)
 	return t->undecided;
 }
 
+void trajectory_widen(struct trajectory *t, int state, mpfr_srcptr off)
+{
+	mpfi_increase(t->x[state], off);
+	deviation_renew(t);
+}
+
 void trajectory_limit(struct trajectory *t, int most)
 {
 	t->noted.most = most;

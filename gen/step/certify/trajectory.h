@@ -93,6 +93,7 @@ struct trajectory {
 /* ---- areas.c: regions as they are met, loads at a time ---- */
 
 void trajectory_row(const struct trajectory *t, const struct output *output, mpq_t *row); /* over x, now */
+mpq_t *trajectory_row_of(const struct trajectory *t, const struct output *output);
 void trajectory_dot(const struct trajectory *t, const mpq_t *row, const mpfi_t *x, mpfi_ptr sum);
 mpq_t *trajectory_times(const struct trajectory *t, const mpq_t *row, const mpq_t *A);  /* row A */
 struct area *trajectory_area(struct trajectory *t, int region);
@@ -116,6 +117,9 @@ struct deviation {
 		double *entry, *slack;
 	} map, *piece;              /* piece: per system, over a piece; NULL: not made yet */
 	struct series_room room;    /* of the core */
+	mpfi_t *before;             /* x where an event began */
+	mpq_t *jump;                /* what it has made of that so far, n x n */
+	int jumps;                  /* in so many assignments */
 };
 void deviation_make(struct trajectory *t);
 void deviation_free(struct trajectory *t);
@@ -127,8 +131,11 @@ int  deviation_expand(struct trajectory *t, mpq_srcptr tau);
 void deviation_over_part(struct trajectory *t, int degree, mpq_srcptr tau, mpfr_srcptr s);
 void deviation_take(struct trajectory *t);      /* x, core and deviation are those behind it */
 void deviation_loads(struct trajectory *t);     /* loads are known there */
-/* From the equations `before` to those here where the guard is met, at most `off` from now: x, core and deviation;
- * false: it is too wide for that, and nothing is changed */
+void deviation_begin(struct trajectory *t);     /* an event, with x as it is now */
+/* of x so many states become what the rows make of it, all of the same x */
+void deviation_assign(struct trajectory *t, int count, const int *state, mpq_t *const *row);
+/* From the equations `before` to those here where the guard is met, at most `off` from where the event began: x, core
+ * and deviation behind what was assigned since; false: it is too wide for that, and nothing is changed */
 bool deviation_cross(struct trajectory *t, const struct guard *guard, const struct stream *before, mpfr_srcptr off);
 
 /* ---- passes.c: the first event of a piece, and what is behind it ---- */
