@@ -175,7 +175,7 @@ static real PL(size)(PL(piece) *p)
         size /= 2;
     }
 #endif
-    for (p->longest *= 2; p->fresh; p->longest = 2 * size) {
+    for (p->longest *= 2; p->fresh && p->parts <= PL_TRIES; p->longest = 2 * size) {
         real gain[PL_STATES], next[PL_STATES], d[PL_ORDER + 1][PL_COLUMNS], terms[PL_ROOM(PL_TERMS)];
         PL(ahead)((const real (*)[PL_COLUMNS])p->c, size, gain);
         for (i = 0; i < PL_STATES; i++) {
@@ -187,6 +187,7 @@ static real PL(size)(PL(piece) *p)
         if (p->fresh) {
             size /= 2;
             p->fresh = size > PL_LEAST_PART;
+            p->parts++; /* one that is too long is an internal step, too */
         }
     }
     return size;
@@ -237,6 +238,9 @@ static inline int PL(go_through)(PL(piece) *p, int *inaccurate)
     size = PL(size)(p);
     if (size == 0) {
         return PL_NOT_FINITE;
+    }
+    if (PL_ADAPTIVE && p->parts > PL_TRIES) {
+        return PL_TOO_MANY_STEPS;
     }
 #if PL_SWITCHING_FUNCTIONS > 0
     meets = PL(meet)(p, &size);

@@ -39,9 +39,10 @@ void check_worst(const struct step *step);                   /* leaves the state
 /* ---- worst_series.c: the most that a step by a series of fixed order does ---- */
 
 /* Of its expansions products, sums, quotients, coefficients that are kept; functions of loads; of a search for events
- * terms of polynomials that are looked at, rows of these, parts; expansions */
+ * terms of polynomials that are looked at, rows of these, parts; expansions; with a tolerance columns that are
+ * measured, halvings, terms of what these may hide */
 enum { WORST_PRODUCTS, WORST_SUMS, WORST_QUOTIENTS, WORST_KEPT, WORST_FORCED, WORST_LOOKED, WORST_ROWS, WORST_PIECES,
-       WORST_EXPANSIONS, WORST_SERIES };
+       WORST_EXPANSIONS, WORST_MEASURED, WORST_HALVED, WORST_SHOWN, WORST_SERIES };
 const char *unbounded_series(const struct step *step);       /* as unbounded_text */
 double worst_of_calls(const struct step *step, int target);  /* in an expansion; NONE: it is not known */
 void count_worst_series(const struct step *step, double part[WORST_SERIES]);

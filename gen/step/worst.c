@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The most instructions that a step takes. Code without a branch that depends on the state takes the sum of what its
- * operations take at most; a search that of its limits, each taken to the full; of a series as long as its tolerance
- * lets it be and of Newton's method there is no such sum. */
+ * operations take at most; a search, and a series as long as its tolerance lets it be, that of their limits, each taken
+ * to the full; of Newton's method there is no such sum. */
 #include "cost.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
@@ -200,6 +200,15 @@ static const double expansions[][2][WORST_SERIES] = {
 	{ { 42, 90, 42, 0, 2100, 0, 0, 0, 5 }, { 1.08, 1.92, 1.08, 3, 169, 0, 0, 0, 5 } },
 	{ { 1.08, 1.95, 1.08, 5.6, 380, 0, 0, 0, 5 }, { 1.1, 1.96, 1.1, 3.5, 163, 0, 0, 0, 5 } }
 };
+/* With a tolerance, to the longest of 8, from huge starts, where all internal steps are short */
+static const double tolerant[][2][WORST_SERIES] = {
+	{ { 154, 192, 154, 0, 7920, 0, 0, 0, 300, 16900, 1300, 1200 },
+	  { 61.5, 120, 61.5, 0, 233, 0, 0, 0, 0, 2600, 310, 500 } },
+	{ { 31.5, 71, 31.5, 0, 2100, 0, 0, 0, 0, 3100, 210, 300 },
+	  { 0.82, 2.8, 0.82, 0, 186, 0, 0, 0, 0, 76, 9.3, 12 } },
+	{ { 0.82, 2.8, 0.82, 0, 418, 0, 0, 0, 0, 170, 9.3, 16 },
+	  { 0.82, 2.83, 0.82, 0, 180, 0, 0, 0, 0, 73, 9.3, 12 } }
+};
 static const double searched[][2][WORST_SERIES] = {
 	{ { 205, 255, 205, 0, 7920, 1250, 1000, 74000 }, { 82, 122, 82, 0, 700, 520, 420, 31500 } },
 	{ { 42, 90, 42, 0, 2100, 320, 250, 32000 }, { 1.6, 2.2, 1.4, 0, 680, 12.2, 15.2, 1930 } },
@@ -240,8 +249,15 @@ static double worst_of_series(const struct step *step, int target, bool single)
 {
 	double part[WORST_SERIES];
 	count_worst_series(step, part);
-	return sum_of(WORST_SERIES, (step->taylor.switching ? searched : expansions)[target][single], part) +
-	       part[WORST_EXPANSIONS] * worst_of_calls(step, target);
+	const double *each = (step->taylor.switching		? searched
+			      : step->model->truncation.adaptive ? tolerant
+								: expansions)[target][single];
+	/* beside a search what a tolerance takes comes on top */
+	const double shortened = step->taylor.switching ? sum_of(WORST_SERIES - WORST_MEASURED,
+								 tolerant[target][single] + WORST_MEASURED,
+								 part + WORST_MEASURED)
+							: 0;
+	return sum_of(WORST_SERIES, each, part) + shortened + part[WORST_EXPANSIONS] * worst_of_calls(step, target);
 }
 
 double worst_of_step(const struct step *step, int target, bool single)
@@ -262,14 +278,20 @@ double worst_of_step(const struct step *step, int target, bool single)
 		    each[6] * p.inputs);
 }
 
-/* On a Cortex-M0 at most 4900 instructions, on ... */
+/* On a Cortex-M0 at most 4900 instructions, on ...; that of all internal steps is far above the usual one */
 const char *worst_text(const struct step *step)
 {
+	enum { MANY = 16 };
 	const char *text = "";
+	const struct truncation *truncation = &step->model->truncation;
+	const int substeps = step->taylor.expansion && truncation->adaptive ? truncation->substeps : 0;
 	for (int t = 0; worst_target(t); t++)
 		text = format("%s%s%.0f on %s", text, !*text ? "" : worst_target(t + 1) ? ", " : " and ",
 			      worst_of_step(step, t, step->model->request.single), worst_target(t));
-	return text;
+	if (substeps == 0)
+		return text;
+	return format("%s, with all %d internal steps%s", text, substeps,
+		      substeps > MANY ? ", too far above the usual step to be of use: fewer 'substeps' lower it" : "");
 }
 
 /* ---- budget N instructions on TARGET for the worst step ---- */
@@ -289,11 +311,28 @@ static const char *fewer_events_text(const struct step *step, int target, double
 	return NULL;
 }
 
+/* The same of internal steps */
+static const char *fewer_substeps_text(const struct step *step, int target, double budget)
+{
+	struct model model = *step->model;
+	struct step fewer = *step;
+	fewer.model = &model;
+	const bool adaptive = step->taylor.expansion && model.truncation.adaptive;
+	for (int n = model.truncation.substeps / 2; n > 0 && adaptive; n /= 2) {
+		model.truncation.substeps = n;
+		const double worst = worst_of_step(&fewer, target, model.request.single);
+		if (worst <= budget)
+			return format("with 'substeps %d' it takes at most %.0f", n, worst);
+	}
+	return NULL;
+}
+
 /* What would take less, of the same step */
 static const char *cheaper_text(const struct step *step, int target, double budget)
 {
 	const bool single = step->model->request.single;
 	const char *fewer = fewer_events_text(step, target, budget);
+	fewer = fewer ? fewer : fewer_substeps_text(step, target, budget);
 	if (fewer)
 		return fewer;
 	if (!single && worst_of_step(step, target, true) <= budget)
@@ -301,7 +340,7 @@ static const char *cheaper_text(const struct step *step, int target, double budg
 	for (int t = 0; worst_target(t); t++)
 		if (worst_of_step(step, t, single) <= budget)
 			return format("%s takes at most %.0f", worst_target(t), worst_of_step(step, t, single));
-	return step->model->switching
+	return step->model->switching || step->taylor.expansion
 		       ? "a smaller step takes less, for its polynomials have fewer terms, and so do fewer coordinates"
 		       : "fewer modes take less (modes N), and so does a model of fewer coordinates";
 }
