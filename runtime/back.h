@@ -7,6 +7,7 @@
  *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state, and PL(move_d) a step of
  *                                derivatives alone
  *     PL_BY_ROWS                 1: that of outputs is the same all along.  PL_DECLARED  0: outputs are the states
+ *     PL_STRIDE                  so many steps are taken backwards at once, where a series serves several
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
  *
  * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
@@ -16,6 +17,9 @@ typedef struct PL(back_work) {
     PL_TYPE after, seeded;
     PL(d) alone, ds; /* of the step without seeds; with them */
     real J[PL_OUTPUTS][PL_DERIVATIVES], seed[PL_OUTPUTS][PL_DERIVATIVES], lam[PL_STATES];
+#if PL_STRIDE > 1
+    real worth[PL_DERIVATIVES], seeded_worth[PL_DERIVATIVES]; /* of the columns of alone, of ds */
+#endif
 #if PL_BY_ROWS
     real row[PL_OUTPUTS][PL_STATES];
 #endif
@@ -317,6 +321,65 @@ void PL(back)(const PL_TYPE *s PL_GIVES, const real *w, real lam[PL_STATES], rea
                  );
 }
 
+#if PL_STRIDE > 1
+/* What the derivatives that ds has at s are worth to the rows of the next n steps, and to lam behind them */
+static void PL(worth_of)(const PL_TYPE *s, PL(back_work) *b, PL(d) *ds, size_t n, const real *w, const real *lam,
+                         real worth[PL_DERIVATIVES])
+{
+    int i, p;
+    b->after = *s;
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        worth[p] = 0;
+    }
+    for (; n > 0; n--) {
+        PL(step_d)(&b->after, ds);
+        if (w != NULL) {
+            PL(out_d)(&b->after, ds, b->J);
+            for (p = 0; p < PL_DERIVATIVES; p++) {
+                for (i = 0; i < PL_OUTPUTS; i++) {
+                    worth[p] += w[i] * b->J[i][p];
+                }
+            }
+            w += PL_OUTPUTS;
+        }
+    }
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        for (i = 0; i < PL_STATES; i++) {
+            worth[p] += lam[i] * ds->s[p][i];
+        }
+    }
+}
+
+/* n steps backwards at once */
+static void PL(stride_back)(const PL_TYPE *s, PL(back_work) *b, size_t n, const real *w, real lam[PL_STATES],
+                            real pb[PL_DERIVATIVES])
+{
+    real scale[PL_DERIVATIVES];
+    int first, p;
+    size_t k, some = 0;
+    for (k = 0; w != NULL && k < n * PL_OUTPUTS; k++) {
+        some |= w[k] < 0 || !(w[k] <= 0);
+    }
+    w = some ? w : NULL;
+    PL(set_d)(&b->alone, NULL);
+    PL(worth_of)(s, b, &b->alone, n, w, lam, b->worth);
+    for (p = 0; p < PL_DERIVATIVES; p++) {
+        pb[p] += b->worth[p];
+        scale[p] = PL(d_size)(b->alone.s[p], PL_STATES, 1);
+    }
+    for (first = 0; first < PL_STATES; first += PL_DERIVATIVES) {
+        PL(seed)(&b->ds, first, scale);
+        PL(worth_of)(s, b, &b->ds, n, w, lam, b->seeded_worth);
+        for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
+            b->lam[first + p] = (b->seeded_worth[p] - b->worth[p]) / scale[p];
+        }
+    }
+    for (p = 0; p < PL_STATES; p++) {
+        lam[p] = b->lam[p];
+    }
+}
+#endif
+
 /* ---- snapshots: binomial checkpointing (Griewank and Walther 2000) ---- */
 
 /* How many steps r replays of each reach with c snapshots: (c + r)! / (c! r!), or more than `enough` */
@@ -354,7 +417,7 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
                     , PL_TYPE *snapshot, size_t snapshots)
 {
-    size_t at[PL_SNAPSHOTS], top = 0, steps = 0, k, m, row;
+    size_t at[PL_SNAPSHOTS], top = 0, steps = 0, k, m, row; /* k, m, row, at: strides */
     PL(back_work) b;
     int i, p;
 #if PL_SLOPED
@@ -369,14 +432,21 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
     PL(begin_back)(&b);
     at[0] = 0;
     snapshot[0] = *s;
-    for (k = n; k > 0; k--) {
+    for (k = (n + PL_STRIDE - 1) / PL_STRIDE; k > 0; k--) {
         struct PL_TYPE now = snapshot[top];
+#if PL_STRIDE > 1
+        size_t step;
+#endif
         row = at[top];
         while (row + 1 < k) {
             m = PL(apart)(k - row, snapshots - top);
-            for (; m > 0; m--, row++, steps++) {
+            for (; m > 0; m--, row++, steps += PL_STRIDE) {
 #if PL_INPUTS > 0
                 PL(step)(&now, u + row * PL_INPUTS);
+#elif PL_STRIDE > 1
+                for (step = 0; step < PL_STRIDE; step++) {
+                    PL(step)(&now);
+                }
 #else
                 PL(step)(&now);
 #endif
@@ -387,6 +457,11 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
                 at[top] = row;
             }
         }
+#if PL_STRIDE > 1
+        step = row * PL_STRIDE;
+        PL(stride_back)(&now, &b, n - step < PL_STRIDE ? n - step : PL_STRIDE,
+                        w == NULL ? NULL : w + step * PL_OUTPUTS, lam, pb);
+#else
         PL(row_back)(&now, &b
 #if PL_INPUTS > 0
                      , u + row * PL_INPUTS
@@ -401,6 +476,7 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
 #endif
                      );
+#endif
         if (b.alone.doubt.status || b.ds.doubt.status) {
             pl_doubt_join(&ds->doubt, &b.alone.doubt, 0);
             pl_doubt_join(&ds->doubt, &b.ds.doubt, 0);

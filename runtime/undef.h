@@ -17,6 +17,7 @@
 #undef PL_AT
 #undef PL_DECLARED
 #undef PL_BESIDE
+#undef PL_STRIDE
 #undef PL_TUNED
 #undef PL_BOTH
 #undef PL_MOVED

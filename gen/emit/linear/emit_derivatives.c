@@ -541,12 +541,12 @@ static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
+		   { "STRIDE", d->apart && serves_rows(e) && !has_peaks(e) ? 8 : 1 },
 		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e->model) },
 		   { "DECLARED", e->model->declared_outputs },
 		   { "SCALED", d->varied != NULL }, { "OUT_SIZE", row },
-		   { "SEGMENTS", row ? e->model->system.segments : 1 },
-		   { "PEAKS", peak_outputs(e->model) }, { "AROUND", around },
-		   { "BY_VALUES", peaks_by_values(e->step) });
+		   { "SEGMENTS", row ? e->model->system.segments : 1 }, { "AROUND", around },
+		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", peaks_by_values(e->step) });
 	if (has_peaks(e))
 		say_macro(e, "PEAK_OF(s)", around ? "(s)->core.peak" : "(s)->peak");
 	say_include(e, "derivatives.h");
