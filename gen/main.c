@@ -404,15 +404,15 @@ static void rewrite_code(struct work *w)
 {
 	if (w->options.print > PRINT_KERNEL)
 		return;
+	const struct derivatives *d = w->step->derivatives;
+	const bool varied = d && d->varied, two_words = w->options.request.compensated && !(varied && d->regions);
 	rewrite(w, w->text);
 	if (w->header)
 		rewrite(w, w->header);
 	if (w->options.bundle || w->options.fmu.path)
 		bundle(w->text, w->header, w->options.fmu.path ? runtime_text("plfmu.h") : NULL,
 		       w->options.request.single,
-		       w->options.request.compensated             ? "_compensated"
-		       : w->step->derivatives && w->step->derivatives->varied ? "_d"
-								  : NULL);
+		       varied ? two_words ? "_compensated_d" : "_d" : two_words ? "_compensated" : NULL);
 	if (w->options.print == PRINT_HEADER)
 		mark_pair(NULL, w->text);
 	else if (w->header)

@@ -187,6 +187,12 @@ static bool is_variant(const struct runtime *r, const char *variant)
 	return r->variant && strcmp(r->variant, variant) == 0;
 }
 
+/* Of derivatives */
+static bool has_columns(const struct runtime *r)
+{
+	return is_variant(r, "_d") || is_variant(r, "_compensated_d");
+}
+
 /* Names that are decided here: 1 defined, 0 not, -1 another name */
 static int decided(const struct runtime *r, const char *name)
 {
@@ -194,9 +200,9 @@ static int decided(const struct runtime *r, const char *name)
 	if (strcmp(name, "REAL_IS_FLOAT") == 0 || strcmp(name, "PL_FLOAT_ONLY") == 0 || strcmp(name, "PL_SINGLE") == 0)
 		return r->single;
 	if (strcmp(name, "STATE_IS_COMPENSATED") == 0)
-		return is_variant(r, "_compensated");
+		return is_variant(r, "_compensated") || is_variant(r, "_compensated_d");
 	if (strcmp(name, "WITH_DERIVATIVES") == 0)
-		return is_variant(r, "_d");
+		return has_columns(r);
 	if (strcmp(name, "__cplusplus") == 0)
 		return 0;
 	return length > 2 && strncmp(name, "PL", 2) == 0 && strcmp(name + length - 2, "_H") == 0 ? 0 : -1;
@@ -236,7 +242,7 @@ static bool take_condition(struct reader *f, const char *line)
 /* Hooks for derivatives, empty where there are none: lines of VARIED and SET_VARIATION, the word AND_VARIATION */
 static const char *without_hooks(const struct runtime *r, const char *text)
 {
-	if (is_variant(r, "_d") || !strstr(text, "VARI"))
+	if (has_columns(r) || !strstr(text, "VARI"))
 		return text;
 	char *copy = ARRAY(char, strlen(text) + 1), *to = copy;
 	for (const char *line = text, *end; *line; line = end) {
@@ -332,7 +338,7 @@ static bool serves(const struct runtime *r, const char *name)
 	int stem = (int)length - 2;
 	bool single = name[stem - 1] == 'f' && runtime_text(format("%.*s.c", stem - 1, name));
 	stem -= single;
-	static const char *const variants[] = { "_compensated", "_d" };
+	static const char *const variants[] = { "_compensated", "_d", "_compensated_d" };   /* the last that fits */
 	const char *own = NULL;
 	bool other = false;
 	for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {

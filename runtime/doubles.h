@@ -117,6 +117,11 @@
 #undef pl_guards_advance_d
 #undef pl_guards_change_d
 #undef pl_switching_advance_d
+#undef pl_guards_compensated_start_d
+#undef pl_switching_compensated_start_d
+#undef pl_guards_compensated_advance_d
+#undef pl_guards_compensated_change_d
+#undef pl_switching_compensated_advance_d
 #undef pl_variation
 #undef pl_variation_change
 #undef pl_varied

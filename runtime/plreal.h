@@ -284,7 +284,7 @@ PL_REAL pl_series_switching_next(const pl_series_switching *m, const PL_REAL *c,
 
 #include "events.h"
 
-/* ---- crossings_d.c, guards_d.c: the same steps with derivatives beside x ---------------------------------------- */
+/* ---- crossings_d.c, guards_d.c, and those in two words: the same steps with derivatives beside x --------------- */
 
 #include "saltation.h"
 

@@ -15,8 +15,8 @@
  *     guards.c       such steps with dry friction and impacts, whose events differ from region to region
  *     crossings_compensated.c, guards_compensated.c
  *                    such steps of a double-double state: --accuracy compensated
- *     crossings_d.c, guards_d.c
- *                    such steps with derivatives: sensitivity
+ *     crossings_d.c, guards_d.c, crossings_compensated_d.c, guards_compensated_d.c
+ *                    such steps with derivatives, in one word and in two: sensitivity
  *     retune.c       coefficients of a step from other params: NAME_retune
  *     event_split.c  event-split steps: schemes with a nonlinear remainder, from event to event
  *     rate.c         the frequency of a load from other params; its phase stays continuous

@@ -60,11 +60,19 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #undef pl_guards_start
 #undef pl_guards_advance
 #undef pl_guards_change
+#ifdef STATE_IS_COMPENSATED
+#define pl_switching_start pl_switching_compensated_start_d
+#define pl_switching_advance pl_switching_compensated_advance_d
+#define pl_guards_start pl_guards_compensated_start_d
+#define pl_guards_advance pl_guards_compensated_advance_d
+#define pl_guards_change pl_guards_compensated_change_d
+#else
 #define pl_switching_start pl_switching_start_d
 #define pl_switching_advance pl_switching_advance_d
 #define pl_guards_start pl_guards_start_d
 #define pl_guards_advance pl_guards_advance_d
 #define pl_guards_change pl_guards_change_d
+#endif
 #endif
 
 /* row . x, of n entries.  Four sums, so that an addition need not wait for the one before it: as fast as several rows

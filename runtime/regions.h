@@ -220,9 +220,12 @@ static int vary_step(const searched *m, const instant *at)
     for (p = 0; p < v->columns && over != NULL; p++) {
         real *S = v->S + (ptrdiff_t)p * n;
         pl_multiply(n, n, Phi, S, v->work);
+        if (WORDS > 1) { /* of e^{A h} - I; second words are not small in columns of loads */
+            pl_multiply_add(n, n, Phi + (ptrdiff_t)n * n, S, v->work);
+        }
         pl_multiply_add(n, n, over + ((ptrdiff_t)p * v->matrices + at->c->matrix) * n * n, at->x, v->work);
         for (i = 0; i < n; i++) {
-            S[i] = v->work[i];
+            S[i] = WORDS > 1 ? S[i] + v->work[i] : v->work[i];
         }
     }
     return over != NULL;

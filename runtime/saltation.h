@@ -102,3 +102,13 @@ void pl_guards_advance_d(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact
                          PL_REAL *work, pl_variation *v);
 void pl_guards_change_d(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                         PL_REAL *work, pl_variation *v);
+
+/* The same beside a double-double x, whose derivatives have one word */
+void pl_switching_compensated_start_d(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
+void pl_switching_compensated_advance_d(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c,
+                                        pl_crossing *crossing, PL_REAL *work, pl_variation *v);
+void pl_guards_compensated_start_d(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
+void pl_guards_compensated_advance_d(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+                                     PL_REAL *work, pl_variation *v);
+void pl_guards_compensated_change_d(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
+                                    PL_REAL *work, pl_variation *v);

@@ -272,7 +272,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         }
 #if PL_COLUMNS_D > 0
         if (v != NULL && !(PL_SWITCHING_FUNCTIONS == 0 && change <= PL_INSTANT)) {
-            pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_SIZE * PL_SIZE, x);
+            pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_VECTOR * PL_SIZE, x);
             v->segment = segment + 1;
         }
 #endif

@@ -500,11 +500,13 @@ ramped
 # ---- impacts and friction: random systems against differences in quadruple precision, by events_judge.c ----
 
 struck=$root/tests/accuracy/events_judge.c
-# judged_events KIND SEED: what its C computes, and what the judge says of it; 77: impacts without an end
+# judged_events KIND SEED OPTION ...: what its C computes, and what the judge says of it; 77: impacts without an end
 judged_events() {
-	./struck "$1" "$2" >e.spec && "$PLGEN" --prefix r e.spec >r.c 2>said &&
+	kind=$1 number=$2
+	shift 2
+	./struck "$kind" "$number" >e.spec && "$PLGEN" --prefix r "$@" e.spec >r.c 2>said &&
 		$run_cc -I"$root/runtime" r.c drive.o "$archive" -lm -o r >>said 2>&1 && ./r 150 >numbers || return 1
-	[ "$1" = graze ] || ./struck judge "$2" <numbers
+	[ "$kind" = graze ] || ./struck judge "$number" <numbers
 }
 
 # The judge by cc: tcc has no numbers in quadruple precision
@@ -527,6 +529,10 @@ if [ $made -eq 0 ]; then
 	: >log
 	[ $((8 * reported)) -le "$most" ] && [ $((4 * endless)) -le "$most" ]
 	result $? "$reported of them are reported, $endless have impacts without an end"
+	for seed in 2 4 8 10; do
+		judged_events spec $seed --accuracy compensated >log 2>&1
+		result $? "events of random model $seed, in two words"
+	done
 	for seed in 282 301; do
 		judged_events spec $seed >log 2>&1
 		result $? "events of random model $seed, at rest on a breakpoint"

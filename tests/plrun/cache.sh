@@ -7,7 +7,7 @@
 # The runtime without what is most of its code, which none of these models needs
 cp -r "$root/runtime" runtime
 for name in guards guards_compensated guards_d events crossings crossings_compensated crossings_d region event_split \
-	peak dense; do
+	crossings_compensated_d guards_compensated_d peak dense; do
 	rm runtime/$name.c runtime/${name}f.c
 done
 PLGEN_RUNTIME=$work/runtime
