@@ -268,7 +268,8 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 		mpfr_set_ui(s, 1, MPFR_RNDN);
 	if (mpfr_cmp_ui(&at->left, 0) <= 0)
 		mpfr_set_zero(s, 1);
-	bool crossed = false;
+	/* Of a reference, which a target is to follow: impacts may enlarge its rounding each time, as they do boxes. */
+	const bool followed = t->noted.most > 0 && has_events(t->s);
 	width_of(at, s, tau, off);
 	deviation_over_part(t, degree, tau, s);
 	deviation_take(t);
@@ -289,7 +290,7 @@ bool trajectory_pass(struct trajectory *t, const struct guard *guard, int degree
 			known = known && resolve(t, guard, off);
 	}
 	trajectory_hold(t);
-	crossed = known && deviation_cross(t, guard, before, off);
+	const bool crossed = known && !followed && deviation_cross(t, guard, before, off);
 	trajectory_loads(t);
 	(crossed ? deviation_loads : deviation_renew)(t);
 	if (!known)
