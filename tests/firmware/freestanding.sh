@@ -32,6 +32,7 @@ library() {         # library FILE: what it defines
 { library libgcc.a; echo memcpy; echo memset; } >"$work/allowed"
 { library libm.a; cat "$work/allowed"; } >"$work/allowed_math"
 
+export CCACHE_DISABLE=1         # it does not keep .ci
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wvla -Werror'
 # builds SOURCE NAME REAL
 builds() {
