@@ -2,6 +2,8 @@
 /* Derivatives of forms with respect to a state, and forms at a point: what a Jacobian is made of. */
 #include "collect/collect.h"
 
+#include <math.h>
+
 /* ---- derivatives ---- */
 
 struct differentiation {
@@ -323,6 +325,7 @@ struct point {
 	int fixings;
 	const struct fixing *fixing;
 	bool values;                /* tunable params have the spec's */
+	bool rounded;               /* long values are doubles */
 	struct form **known;        /* per atom */
 	struct span *span;          /* when it holds */
 	int count;
@@ -445,6 +448,21 @@ static struct form *place_atom(struct point *p, const struct atom *a)
 	return placed;
 }
 
+/* Digits of iterates multiply with each: what a double holds is left of them. */
+static struct form *shortened(const struct point *p, struct form *form)
+{
+	enum { LONG = 512 };            /* bits */
+	RATIONAL value = ZERO;
+	if (!p->rounded || !is_constant(form))
+		return form;
+	constant_value(p->c, form, value);
+	const double rounded = mpq_get_d(value);
+	if (mpz_sizeinbase(mpq_numref(value), 2) + mpz_sizeinbase(mpq_denref(value), 2) < LONG || !isnormal(rounded))
+		return form;
+	mpq_set_d(value, rounded);
+	return form_constant(value);
+}
+
 static struct form *place_basis(struct point *p, const struct basis *basis)
 {
 	const struct fixing *time = fixed_time(p);
@@ -463,7 +481,7 @@ static struct form *place_basis(struct point *p, const struct basis *basis)
 	if (!p->known[index] || !holds_now(c, p->span[index])) {
 		struct span outer = c->span;
 		c->span = (struct span){ NULL, NULL };
-		p->known[index] = place_atom(p, basis->atom);
+		p->known[index] = shortened(p, place_atom(p, basis->atom));
 		p->span[index] = c->span;
 		narrow_span(c, outer);
 	} else {
@@ -507,6 +525,11 @@ void point_free(struct point *p)
 void point_at_values(struct point *p)
 {
 	p->values = true;
+}
+
+void point_rounded(struct point *p)
+{
+	p->rounded = true;
 }
 
 struct form *form_at(struct point *p, const struct form *form)

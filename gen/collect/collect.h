@@ -273,6 +273,7 @@ struct point;                       /* t and coordinates fixed; lets are not loo
 struct point *point_new(struct collector *c, int fixings, const struct fixing *fixing);
 void point_free(struct point *point);                       /* and what forms are at it, where that is a number */
 void point_at_values(struct point *point);                  /* tunable params have the spec's values there */
+void point_rounded(struct point *point);                    /* long values are doubles there: for estimates */
 /* leaves the statement where the form is not defined there */
 struct form *form_at(struct point *point, const struct form *form);
 

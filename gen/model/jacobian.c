@@ -74,6 +74,7 @@ static void jacobian_at(struct jacobian *j, struct point *point)
 	struct collector *c = &j->b->collector;
 	int n = model->n;
 	point_at_values(point);
+	point_rounded(point);
 	for (int k = 0; k < n; k++)
 		for (int i = 0; i < n; i++) {
 			/* of first order: what multiplies the highest derivative */
