@@ -88,6 +88,9 @@ for name in quality_check convergence hard_raw; do
         quality_check) "$build/bench/charts/integrators" --quick again >progress 2>&1 ;;
         *) "$build/bench/charts/${name%_raw}" --quick "$out/variants" again >progress 2>&1 ;;
     esac
+    # this one is drawn from fewer digits, bench/charts/draw.sh
+    [ $name != convergence ] || { sh "$charts/table.sh" digits -v to=4 again/$name.csv >digits &&
+        mv digits again/$name.csv; }
     diff "$out/$name.csv" "again/$name.csv" >"$log" 2>&1
     result $? "$name.csv: the same bytes twice"
 done

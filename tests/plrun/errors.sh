@@ -188,7 +188,7 @@ note: did you mean 'k'?" swing.spec 1 -D kk=1
 refuses 'a scheme' 1 "$("$PLGEN" --scheme rk4 swing.spec 2>&1)" swing.spec 1 --scheme rk4
 refuses 'no such spec' 1 "$("$PLGEN" none.spec 2>&1)" none.spec 1
 refuses 'values of a param that make no step' 1 \
-	'swing: error: k: with these values the numbers of the step are not finite' swing.spec 1 -D k=1e300
+	'swing: error: k = 1e+300: with these values the numbers of the step are not finite' swing.spec 1 -D k=1e300
 
 # ---- records ----
 # record NAME LINES EXPECTED [OPTIONS]

@@ -125,7 +125,7 @@ plrun drive.spec --input push.csv >as_is.csv 2>log && plrun drive.spec --input p
 	twisted 300 as_is.csv >>log && twisted 800 tuned.csv >>log
 result $? "drive: twist and speed, as it is and with another k: $(tail -n 2 log | paste -s -d ' ')"
 plrun drive.spec --input push.csv -D k=50 >low.csv 2>log
-[ $? -eq 1 ] && grep -q '^drive: error: k: .*ranges that the spec gives' log
+[ $? -eq 1 ] && grep -q '^drive: error: k = 50: outside of the range' log
 result $? 'drive: a k out of its range is refused by its name'
 
 # ---- the same as an FMU ----
