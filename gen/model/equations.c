@@ -296,7 +296,7 @@ static void leading_factors(struct leading l, int row, mpq_t *factor)
 		const struct form_term *term = &form->term[i];
 		if (term->basis.atom && term->basis.atom->highest)
 			form_add_basis(moving, term->basis, term->factor);
-		else if (is_highest(&l.b->model->frame, &term->basis))
+		else if (is_highest(&l.b->model->frame, &term->basis) && term->basis.index < l.b->model->n)
 			mpq_set(factor[term->basis.index], term->factor);
 	}
 	l.form = moving;
