@@ -27,6 +27,7 @@ struct building {                   /* what the builders share */
 	struct segment_equations *nominal;
 	int nominals;               /* its intervals */
 	bool crowded;               /* its regions, if it has some, are too many */
+	bool eliminates;            /* constraints, as linear as all equations are: these are solved in rationals */
 	const bool *factor;         /* per tunable param: a number of regions, and no input; NULL: none is */
 	struct point *values;       /* nothing fixed but tunable params; made on first use */
 	/* [segment][row]: the residual's part that depends on time alone, as the linear core carries it */

@@ -215,14 +215,16 @@ static void factor(struct start *w, int level, double named)
 		w->S[i] *= w->scale[i / m] * w->scale[i % m];
 	for (w->rank = 0; w->rank < m; w->rank++) {
 		int best = w->rank;
-		for (int i = w->rank + 1; i < m; i++)
-			if (w->S[w->order[i] * m + w->order[i]] > w->S[w->order[best] * m + w->order[best]] + 1e-9)
+		for (int i = w->rank + 1; i < m; i++) /* one that says something before one of the other level */
+			if (w->S[w->order[i] * m + w->order[i]] >
+				    w->S[w->order[best] * m + w->order[best]] + 1e-9 ||
+			    (w->scale[w->order[best]] == 0 && w->scale[w->order[i]] > 0))
 				best = i;
 		const int p = w->order[best];
-		if (!(w->S[p * m + p] > DEPENDENT))
-			return;
 		w->order[best] = w->order[w->rank];
 		w->order[w->rank] = p;
+		if (!(w->S[p * m + p] > DEPENDENT))
+			return;
 		w->S[p * m + p] = sqrt(w->S[p * m + p]);
 		for (int i = w->rank + 1; i < m; i++)
 			w->S[w->order[i] * m + p] /= w->S[p * m + p];
@@ -585,9 +587,10 @@ static void keep(void *context)
 	refuse(CAN_CONSTRAINTS, b->model, rows_of(b)->constraint[0].statement->at);
 	check_inputs(b);
 	check_friction(b);
-	build_corrections(b);
 	if (!b->request->again.tunable)
-		meet_constraints(b);
+		meet_constraints(b);            /* dependent ones are named before they are solved for */
+	if (!b->eliminates)
+		build_corrections(b);
 }
 
 void keep_constraints(struct building *b)

@@ -165,6 +165,8 @@ void collect_outputs(struct building *b, struct segment_equations *segment_equat
 	int index = 0;
 	segment_equations->output = ARRAY(struct value *, b->spec->count.outputs);
 	b->collector.tolerant = b->collector.reading = true;
+	b->collector.multiplier = segment_equations->multiplier;
+	b->collector.output = segment_equations->multiplier != NULL;
 	for (const struct symbol *s = b->spec->first; s; s = s->next) {
 		struct output_work work = { b, s->value, NULL };
 		if (s->kind != SYMBOL_OUTPUT)
@@ -172,7 +174,7 @@ void collect_outputs(struct building *b, struct segment_equations *segment_equat
 		statement_guard(collect_output, &work);
 		segment_equations->output[index++] = work.value;
 	}
-	b->collector.tolerant = b->collector.reading = false;
+	b->collector.tolerant = b->collector.reading = b->collector.output = false;
 }
 
 /* An output is a row over states and loads if it is so in all segments of time, with the same states. */

@@ -111,6 +111,48 @@ static struct demands demands_of(const struct building *b)
 	return (struct demands){ same && !atoms, piecewise && (same || atoms) };
 }
 
+/* Of constant coefficients, without inputs, and the same at all times */
+static bool is_plain_constraint(const struct building *b, int index)
+{
+	const struct segment_equations *first = b->segment_equations;
+	bool plain = true;
+	for (int s = 0; s < b->model->system.segments; s++)
+		for (int k = 0; k < 3; k++) {
+			const struct form *by = first[s].constraint[index].by[k];
+			for (int i = 0; by && i < by->terms; i++)
+				plain = plain && by->term[i].basis.kind != BASIS_INPUT;
+			plain = plain && (!by || (!holds_atom(by) && same_form(by, first->constraint[index].by[k])));
+		}
+	return plain;
+}
+
+/* Whether constraints leave equations that are linear, in which nothing is tuned or derived by, and scheme exact takes
+ * them: as they are collected, before elements are added */
+static bool may_eliminate(const struct building *b)
+{
+	const struct request *request = b->request;
+	const struct spec *spec = b->spec;
+	bool may = spec->count.multipliers > 0 && b->model->scheme == SCHEME_EXACT && demands_of(b).linear &&
+		   b->model->contacts.impacts == 0 && spec->whens == 0 && spec->tuned.count == 0 &&
+		   spec->sensitivities == 0 && !request->sensitivity && !request->passed_over &&
+		   !request->loads_left && !request->linear.where && !spec->operators.given &&
+		   !spec->modes.at.source && !request->modes && !request->reduce;
+	for (int i = 0; i < spec->count.multipliers && may; i++)
+		may = is_plain_constraint(b, i);
+	return may;
+}
+
+/* Outputs that read multipliers, now that these are solved for */
+static void read_multipliers(struct building *b)
+{
+	for (int s = 0; s < b->model->system.segments; s++) {
+		b->collector.interval = s;
+		forget_lets(b->spec);
+		collect_outputs(b, &b->segment_equations[s]);
+	}
+	b->collector.interval = 0;
+}
+
 /* Of loads only where nothing goes from event to event */
 bool leaves_over(const struct building *b)
 {
@@ -371,7 +413,7 @@ static bool choose_scheme(struct building *b)
 {
 	struct model *model = b->model;
 	bool linear = is_linear(b) && model->contacts.impacts == 0;
-	const bool constrained = b->spec->count.multipliers > 0;
+	const bool constrained = b->spec->count.multipliers > 0 && !b->eliminates;
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
@@ -479,8 +521,12 @@ void build_system(struct building *b)
 	struct linear *system = &model->system;
 	if (!check_sizes(b) || !assign_equations(b))
 		return;
+	b->eliminates = may_eliminate(b);
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->segment_equations[s]);
+	model->equations.eliminated = b->eliminates;
+	if (b->eliminates && !diagnostics_errors())
+		read_multipliers(b);
 	if (diagnostics_errors() || !choose_scheme(b))
 		return;
 	const struct segment_equations *rows = b->full ? b->full : b->segment_equations;

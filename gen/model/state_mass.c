@@ -237,6 +237,42 @@ static void add_constraints(struct solving *w, int n, const int *order, int i, c
 	}
 }
 
+static bool eliminates(const struct solving *w)
+{
+	return w->b->eliminates && w->s != w->b->full;
+}
+
+/* Where all coefficients are numbers: highest derivatives and multipliers as linear forms; false: M is singular */
+static bool solve_linear_block(struct solving *w, const struct node *node, int n, const int *order,
+			       const struct form *const *M, const struct form *const *f)
+{
+	struct building *b = w->b;
+	RATIONALS *value = rationals((size_t)(n * n)), *inverse = rationals((size_t)(n * n));
+	const struct energy *kinetic;
+	bool definite;
+	int column, coords = 0;
+	while (coords < n && order[coords] < w->coords)
+		coords++;
+	for (int i = 0; i < n * n; i++)
+		constant_value(&b->collector, M[i], value[i]);
+	const int negative = negative_mass(b, coords, n, value, &kinetic, &definite);
+	if (negative >= 0)
+		report_negative_mass(b, kinetic, order[negative]);
+	b->eliminates = negative < 0 && rational_inverse(n, value, inverse, &column);
+	for (int i = 0; i < n && b->eliminates; i++) {
+		struct form *solution =
+			kept_solution(&b->collector, node, &(struct linear_system){ n, M, f, NULL }, i);
+		if (order[i] >= w->coords)
+			w->s->multiplier[order[i] - w->coords] = solution;
+		else
+			w->s->residual[row_of(w, order[i])].form =
+				form_difference(form_unit((struct basis){ .kind = BASIS_COORD, .index = order[i],
+									  .order = highest_order(b, order[i]) }),
+						solution);
+	}
+	return negative >= 0 || b->eliminates;
+}
+
 static void solve_block(struct solving *w, int block)
 {
 	SCRATCH int *order = ARRAY(int, w->n);
@@ -257,6 +293,8 @@ static void solve_block(struct solving *w, int block)
 	struct nonlinear_terms *terms = take_nonlinear_terms(w->b, node, n, highest, M, F);
 	for (int i = 0; i < n; i++)
 		f[i] = form_difference(NEW(struct form), at_rest(w->b, w->rest, F[i]));
+	if (eliminates(w) && solve_linear_block(w, node, n, order, M, f))
+		return;
 	for (int i = 0; i < n * n && terms; i++)
 		M[i] = form_difference(M[i], terms->slope[i]);
 	for (int i = 0; i < n && lacks_mass(w, n, order); i++)
@@ -291,6 +329,8 @@ static void solve_blocks(void *context)
 	for (int i = 0; i < 2 * w->n; i++)
 		if (root_of_node(w->block, i) == i && !is_constant_block(w, i))
 			solve_block(w, i);
+	if (eliminates(w) && !diagnostics_errors())
+		eliminate_dependent(w->b, w->s);
 }
 
 void solve_for_highest(struct building *b, struct segment_equations *s)

@@ -54,6 +54,11 @@ struct point;
 struct written_system;
 void check_kinks_at_start(struct building *b, struct point *start, const struct written_system *written);
 
+/* ---- elimination.c ---- */
+
+/* Coordinates that linear constraints give out of all residuals, and out of multipliers; they follow the others. */
+void eliminate_dependent(struct building *b, struct segment_equations *s);
+
 /* ---- constraints.c ---- */
 
 /* What brings a state back onto them: model->equations.correction; initial values that meet them */

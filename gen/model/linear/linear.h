@@ -47,6 +47,7 @@ struct equilibrium {
 	int directions;             /* along which nothing holds it: rows over the coordinates, largest entry 1 */
 	double *free;
 };
+enum { DECAY_OF_MISSES = 4 };       /* of eliminated constraints, in a step: a h of (1 + a t) e^{-a t} */
 struct equations {                  /* as they are written */
 	struct residual *residual;  /* per row of the system, in the first segment of time */
 	struct segment_equations *segment_equations; /* per segment */
@@ -67,6 +68,7 @@ struct equations {                  /* as they are written */
 	struct equilibrium *equilibrium;
 	/* per state: what has to be taken from it for the constraints to hold, to first order; NULL: there are none */
 	const struct form **correction;
+	bool eliminated;            /* constraints stand in linear equations, with a force that holds them */
 	/* T and V beside constraints, where their sum stays; NULL: it may change */
 	const struct form *conserved[2];
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */
