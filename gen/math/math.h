@@ -195,8 +195,12 @@ struct response {                   /* scale * N/D, N and D coprime */
 	struct rectangle ***residue; /* [factor][pole][k], for `precision` bits */
 	int precision;
 	mpq_t last;                 /* time at which it was enclosed last */
+	mpq_srcptr a, w;            /* the pole a + i w is left out of the sum; NULL: none is */
+	bool alone;                 /* then no pole but 0 is summed */
 };
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
+/* The same less the residues at a +- i w, w >= 0, roots of `pole`, which a load alone has brought in */
+struct response *response_without(const struct response *whole, struct poly pole, mpq_srcptr a, mpq_srcptr w);
 /* True if the value at tau is rational: then `exact` is it. False: it is transcendental, and response_enclose
  * converges. */
 bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact);

@@ -95,6 +95,30 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 	return response;
 }
 
+struct response *response_without(const struct response *whole, struct poly pole, mpq_srcptr a, mpq_srcptr w)
+{
+	struct response *response = NEW(struct response);
+	struct poly rest = whole->spectrum->D;
+	*response = *whole;
+	mpq_init(response->last);
+	response->precision = 0;
+	response->a = a;
+	response->w = w;
+	if (mpq_sgn(a) == 0 && mpq_sgn(w) == 0)
+		response->at_zero = rationals(whole->spectrum->zero);
+	while (poly_divides(pole, rest))
+		rest = poly_divide(rest, pole);
+	response->alone = rest.length - 1 == poly_valuation(rest);
+	return response;
+}
+
+/* Poles are isolated: the rectangle that a + i w lies in is that pole's. */
+static bool is_left_out(const struct response *response, const struct pole *pole)
+{
+	return response->a && mpfi_is_inside_q(response->a, pole->at.re) > 0 &&
+	       mpfi_is_inside_q(response->w, pole->at.im) > 0;
+}
+
 /* Is e^{-p tau} times the residue 0 at every root of the factor? With w_k = a_k v_0^{k+1}, an integer polynomial in p:
  * sum_k w_{m-1-k} v_0^k tau^k/k! must be divisible by the factor. */
 static bool residue_vanishes(const struct response *response, const struct factor *factor, mpq_srcptr tau)
@@ -129,6 +153,11 @@ static bool residue_vanishes(const struct response *response, const struct facto
 bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact)
 {
 	const struct spectrum *spectrum = response->spectrum;
+	if (response->a) {
+		value_at_zero(response, tau, exact);
+		mpq_mul(exact, exact, response->scale);
+		return response->alone;
+	}
 	if (mpq_sgn(tau) == 0) {                /* the limit s N/D at infinity */
 		mpq_set_ui(exact, 0, 1);
 		if (response->N.length > 0 && response->N.length + 1 == spectrum->D.length) {
@@ -305,7 +334,8 @@ static void find_residues(struct response *response, int precision)
 	for (int f = 0; f < spectrum->factors; f++) {
 		response->residue[f] = ARRAY(struct rectangle *, spectrum->poles[f]);
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			response->residue[f][i] = residue_series(response, f, i, precision);
+			if (!is_left_out(response, &spectrum->pole[f][i]))
+				response->residue[f][i] = residue_series(response, f, i, precision);
 	}
 	response->precision = precision;
 }
@@ -347,8 +377,9 @@ bool response_enclose(struct response *response, mpq_srcptr tau, int precision, 
 	mpfi_set_q(value, exact);
 	for (int f = 0; f < spectrum->factors; f++)
 		for (int i = 0; i < spectrum->poles[f]; i++)
-			add_residue(&spectrum->pole[f][i], spectrum->factor[f].multiplicity, response->residue[f][i],
-				    &exponential[f][i], tau, value);
+			if (response->residue[f][i])
+				add_residue(&spectrum->pole[f][i], spectrum->factor[f].multiplicity,
+					    response->residue[f][i], &exponential[f][i], tau, value);
 	mpfi_mul_q(value, value, response->scale);
 	return true;
 }

@@ -394,6 +394,21 @@ printf "model m\ncoord x\ninit x = 1 - log(2), x' = 2\nx'' + 0.3*x' + 2*x = cos(
 		END { exit bad || FNR != 12 || rows != 12 || NF != 3 }' hand.csv bent.csv >>log
 result $? 'deviations from rest: the closed form of the linear equations by hand'
 
+cat >ended.spec <<'END'
+model ended
+coord x, y, z
+init x = 1, y = 1
+x' + x = t < 1 ? cos(3*t) : 0
+y'' + y = t < 2 ? t : 0
+z'' + z = t < 2 ? cos(t) : 0
+step 50
+END
+"$plgen" --solution 600 ended.spec 2>log | awk -F, 'NR > 3 { t = $1 - 2
+		off = ($2/x/exp(-50) - 1)^2 + ($3 - cos($1) + sin($1) - 2*cos(t) - sin(t))^2
+		if (off + ($4 - sin($1) - sin(2)/2*sin(t))^2 > 1e-26) { print $1, off; bad = 1 } } { x = $2 }
+	END { exit bad || NR != 14 }' >>log
+result $? 'a load that has ended: to all digits what it has left, also where it swings as the mass does'
+
 # linear NAME EQUATION OPTION...: a load in time, a scheme, a param that the target changes take nothing away
 linear() {
 	name=$1

@@ -20,7 +20,9 @@ static struct closed_form closed_form_of(const struct step *step, int state, con
 	form.count = responses_of_output(resolvent, system, start, &output, &form.list);
 	ENLARGE(form.list, (size_t)form.count + (size_t)system->inputs);
 	for (int i = 0; i < system->inputs; i++) {
-		form.list[form.count].response = response_of_input(resolvent, system, state, i, 0, step->model->h);
+		form.list[form.count] = (struct started){
+			.response = response_of_input(resolvent, system, state, i, 0, step->model->h)
+		};
 		mpq_init(form.list[form.count++].start);
 	}
 	return form;

@@ -39,6 +39,8 @@ mpq_t *impulse_of_force_column(const struct linear *system, int force_column);
 struct started {                    /* a response that starts at a time of its own */
 	struct response *response;
 	mpq_t start;
+	struct response *transient; /* in its place behind `end`, from where on a load acts no more; NULL: never */
+	mpq_srcptr end;
 };
 /* output(t) from t = 0 as a sum of responses; returns how many */
 int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,

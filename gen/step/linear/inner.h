@@ -27,6 +27,8 @@ struct modal *modal_of(const struct step *step);             /* NULL: a number i
  * another system than before. Of many states none is. */
 struct response **response_kept(struct resolvent *r, const struct linear *system, int number);
 struct spectrum *resolvent_spectrum(const struct resolvent *r);                /* of B(s) */
+/* A response to this less what swings with the excitation alone; NULL: poles of B swing so, too */
+struct response *transient_of(const struct resolvent *r, const struct response *whole, const struct excitation *e);
 
 /* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
 

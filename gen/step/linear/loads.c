@@ -235,51 +235,88 @@ struct response *output_of_input(struct resolvent *r, const struct linear *syste
 	return image_of(r, &(struct question){ NULL, 1, &e, output->state });
 }
 
-/* All loads of one segment from time t on, times `sign` */
-static void add_loads(struct excitation *e, const struct linear *system, const struct output *output, int segment,
-		      mpq_srcptr t, int sign)
+/* What one load of a segment from time t on does, times `sign` */
+static void add_load_from(struct excitation *e, const struct linear *system, const struct output *output, int l,
+			  int segment, mpq_srcptr t, int sign)
 {
 	RATIONAL z = ZERO;
-	for (int l = 0; l < system->loads; l++)
-		for (int column = 0; column < system->load[l].columns; column++) {
-			load_state(&system->load[l], column, t, z);
-			if (sign < 0)
-				mpq_neg(z, z);
-			if (mpq_sgn(z) != 0)
-				add_load(&e[l], system, segment, &system->load[l], output->load[l], column, z);
-		}
+	for (int column = 0; column < system->load[l].columns; column++) {
+		load_state(&system->load[l], column, t, z);
+		if (sign < 0)
+			mpq_neg(z, z);
+		if (mpq_sgn(z) != 0)
+			add_load(e, system, segment, &system->load[l], output->load[l], column, z);
+	}
 }
 
-static struct excitation *no_loads(const struct linear *system)
+static bool acts(const struct linear *system, const struct output *output, int l, int segment)
 {
+	const struct load *load = &system->load[l];
+	bool any = false;
+	for (int column = 0; column < load->columns && !any; column++)
+		any = !rationals_zero((size_t)system->n, load->force[column] + segment * system->n) ||
+		      (output->load[l] && mpq_sgn(output->load[l][column * system->segments + segment]) != 0);
+	return any;
+}
+
+/* From when on it does not act any more, first of all; NULL: it acts in this segment and in all behind it */
+static mpq_srcptr end_of_load(const struct linear *system, const struct output *output, int l, int segment)
+{
+	while (segment < system->segments && acts(system, output, l, segment))
+		segment++;
+	return segment < system->segments && segment > 0 ? system->change[segment - 1] : NULL;
+}
+
+struct starts {                     /* what an output is a sum of */
+	int count;
+	struct started *list;
+};
+
+static struct started *add_start(struct starts *s, struct response *response, mpq_srcptr start)
+{
+	struct started *added = MORE(s->list, s->count);
+	*added = (struct started){ .response = response };
+	mpq_init(added->start);
+	mpq_set(added->start, start);
+	return added;
+}
+
+/* What changes where a segment begins; a load that ends is by itself, what lasts in one response with the start. */
+static void add_changes(struct resolvent *r, const struct linear *system, const mpq_t *initial,
+			const struct output *output, int segment, bool first, struct starts *to)
+{
+	mpq_srcptr start = first ? rationals(1)[0] : system->change[segment - 1];
 	struct excitation *e = ARRAY(struct excitation, system->loads);
-	for (int l = 0; l < system->loads; l++)
-		e[l] = excitation_new(system->n, system->load[l].forcing->a, system->load[l].forcing->w,
-				      system->load[l].powers);
-	return e;
+	const mpq_t *none = rationals(system->states);
+	for (int l = 0; l < system->loads; l++) {
+		const struct load *load = &system->load[l];
+		mpq_srcptr end = end_of_load(system, output, l, segment);
+		e[l] = excitation_new(system->n, load->forcing->a, load->forcing->w, load->powers);
+		add_load_from(&e[l], system, output, l, segment, start, 1);
+		if (!first)
+			add_load_from(&e[l], system, output, l, segment - 1, start, -1);
+		if (!end)
+			continue;
+		struct started *alone =
+			add_start(to, image_of(r, &(struct question){ none, 1, &e[l], output->state }), start);
+		alone->transient = transient_of(r, alone->response, &e[l]);
+		alone->end = end;
+		e[l] = excitation_new(system->n, load->forcing->a, load->forcing->w, load->powers);
+	}
+	const struct question lasting = { first ? initial : none, system->loads, e, output->state };
+	add_start(to, image_of(r, &lasting), start);
 }
 
 /* From the start with the loads of the segment that holds t = 0; then at each change the difference of the loads. */
 int responses_of_output(struct resolvent *r, const struct linear *system, const mpq_t *initial,
 			const struct output *output, struct started **list)
 {
-	int first = 0, count = 0;
-	mpq_srcptr zero = rationals(1)[0];
+	struct starts all = { 0 };
+	int first = 0;
 	while (first < system->segments - 1 && mpq_sgn(system->change[first]) <= 0)
 		first++;
-	*list = ARRAY(struct started, (size_t)(system->segments - first));
-	for (int s = first; s < system->segments; s++, count++) {
-		struct excitation *e = no_loads(system);
-		mpq_srcptr start = s == first ? zero : system->change[s - 1];
-		add_loads(e, system, output, s, start, 1);
-		if (s > first)
-			add_loads(e, system, output, s - 1, start, -1);
-		const mpq_t *none = rationals(system->states);
-		bool from_rest = s > first;
-		(*list)[count].response = image_of(r, &(struct question){ from_rest ? none : initial, system->loads, e,
-									  output->state });
-		mpq_init((*list)[count].start);
-		mpq_set((*list)[count].start, start);
-	}
-	return count;
+	for (int s = first; s < system->segments; s++)
+		add_changes(r, system, initial, output, s, s == first, &all);
+	*list = all.list;
+	return all.count;
 }

@@ -60,6 +60,13 @@ _Noreturn void undecided(struct place at, const char *what, bool isolated)
 
 /* ---- enclosed, or exact ---- */
 
+/* What a load has done while it acted cancels from its end on, all but what it has left moving: of sums of both, all
+ * digits would in time. */
+static struct response *response_at(const struct started *s, mpq_srcptr t)
+{
+	return s->transient && mpq_cmp(t, s->end) > 0 ? s->transient : s->response;
+}
+
 /* One term; false: it is beyond the method's limits. *absent: it has not started. */
 static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr value, bool *absent)
 {
@@ -75,7 +82,7 @@ static bool enclose_term(const struct number *n, int i, int precision, mpfi_ptr 
 	RATIONAL tau = ZERO;
 	mpq_sub(tau, n->t, n->list[i].start);
 	*absent = mpq_sgn(tau) < 0;
-	return *absent || response_enclose(n->list[i].response, tau, precision, value);
+	return *absent || response_enclose(response_at(&n->list[i], n->t), tau, precision, value);
 }
 
 bool enclose_number(const struct number *n, int precision, mpfi_ptr sum)
@@ -106,7 +113,7 @@ static bool exact_term(const struct number *n, int i, mpq_ptr value)
 	RATIONAL tau = ZERO;
 	mpq_sub(tau, n->t, n->list[i].start);
 	mpq_set_ui(value, 0, 1);
-	bool exact = mpq_sgn(tau) < 0 || response_exact(n->list[i].response, tau, value);
+	bool exact = mpq_sgn(tau) < 0 || response_exact(response_at(&n->list[i], n->t), tau, value);
 	return exact;
 }
 

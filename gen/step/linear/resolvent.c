@@ -321,3 +321,9 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 	mpz_mul(mpq_denref(unit), scale, rows);
 	return response_of(unit, N, D);
 }
+
+struct response *transient_of(const struct resolvent *r, const struct response *whole, const struct excitation *e)
+{
+	struct poly pole = oscillation_of(e).D;
+	return poly_divides(pole, r->B) ? NULL : response_without(whole, pole, e->a, e->w);
+}
