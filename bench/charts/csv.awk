@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Reading CSV, and numbers in sentences: -f csv.awk before the program. A line into fields; quotes keep commas. Fields
 # are strings, also those that look like numbers: "1e-2" is not "0.01", and "0" is not false. `same`, and nothing in the
-# first of several columns, `family` or `setting_kind`, is what the row above has there.
+# first of several columns, or in those of is_left_out, is what the row above has there.
 function split_row(line, field,    n, i) {
 	n = split_fields(line, field)
 	for (i = 1; i <= n; i++) {
@@ -10,7 +10,9 @@ function split_row(line, field,    n, i) {
 	}
 	return n
 }
-function is_left_out(i) { return i == 1 || head[i] == "family" || head[i] == "setting_kind" }
+function is_left_out(i) {
+	return i == 1 || head[i] ~ /^(family|setting_kind|coupling_k2_over_k1|first_wh|ratio_of_wh)$/
+}
 function split_fields(line, field,    n, text, pieces, piece, parts, part, i, j) {
 	if (index(line, "\"") == 0) {
 		n = split(line, field, ",")

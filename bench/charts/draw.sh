@@ -60,8 +60,8 @@ for name in hard_methods headline_integrators headline_equal_step; do
 	derive $name.csv "precision_methods.csv $name.csv" unlike
 done
 for name in energy:steps frame_history:t_s hard hard_methods headline_confluence headline_equal_step \
-	headline_integrators integrators:h_over_T largest_step:criterion operator_map papers_beam_tip:t_s precision \
-	quality:h_over_T stability_map; do
+	headline_integrators integrators:h_over_T largest_step:criterion operator_map papers_beam_tip:t_s plmap \
+	precision quality:h_over_T stability_map; do
 	derive ${name%:*}.csv ${name%:*}.csv same -v in_column="${name#*:}"
 done
 

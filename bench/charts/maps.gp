@@ -121,6 +121,7 @@ set format '%g'
 set grid noxtics noytics
 # log10 of w h, of k2/k1, and of the ratio; a blank line between rows of the map
 block(layout, periods) = "< awk -F, -v layout='".layout."' -v periods=".periods." '".\
+	"{ for (i = 1; i < 6; i++) if ($i == \"\") $i = last[i]; else last[i] = $i } ".\
 	"$1 == layout && $2 == periods { n = split($6, r, \" \"); print \"\"; ".\
 	"for (i = 1; i <= n; i++) print (log($4) + (i - 1)*log($5))/log(10), log($3)/log(10), ".\
 	"r[i] == \"-\" ? \"NaN\" : r[i] }' '".csv."'"
