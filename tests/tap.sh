@@ -21,6 +21,13 @@ merging() {
 	[ -n "${LONG:-}${MERGE:-}" ]
 }
 
+# one_of N: whether `make check` takes what asks: the first of each N that do, where it is merging all
+asked=0
+one_of() {
+	asked=$((asked + 1))
+	merging || [ $((asked % $1)) -eq 1 ]
+}
+
 # seeds FIRST COUNT: so many from FIRST on, STRIDE in the environment apart
 seeds() {
 	seq "$1" "${STRIDE:-1}" $(($1 + $2 * ${STRIDE:-1} - 1))

@@ -5,8 +5,8 @@
 #
 #     batch.sh PLGEN SOURCE_ROOT
 #
-# LONG=1: of more models, as vectors of what this machine has too, and by clang; there products may be contracted.
-# Else code that another test compiles with an optimiser has none: its bits are the same.
+# MERGE=1: of all of these models. LONG=1: of more, as vectors of what this machine has too, and by clang; there
+# products may be contracted. Else code that another test compiles with an optimiser has none: its bits are the same.
 set -u
 plgen=$(realpath "$1")
 root=$(realpath "$2")
@@ -89,7 +89,7 @@ while read -r spec options; do
 		*) bits=0 ;;
 	esac
 	# shellcheck disable=SC2086
-	[ -n "${LONG:-}" ] || { agrees $bits "$run_cc" '' "$spec" $options; continue; }
+	long || { ! one_of 3 || agrees $bits "$run_cc" '' "$spec" $options; continue; }
 	agrees $bits "${CC:-cc} -std=c99" -O0 "$spec" $options
 	for compiler in "${CC:-cc} -std=c99" 'clang -std=c99'; do
 		# shellcheck disable=SC2086
@@ -127,8 +127,11 @@ tests/holds/tuned.spec}
 END
 
 for spec in stops.spec rubs.spec swings.spec several.spec blocks.spec modes.spec; do
-	specs=$work agrees 0 "$run_cc" '' "$spec"
-	[ $spec = swings.spec ] || specs=$work agrees 0 "${CC:-cc} -std=c99" "$level -ffp-contract=off" "$spec"
+	if merging; then
+		specs=$work agrees 0 "$run_cc" '' "$spec"
+		[ $spec = swings.spec ] ||
+			specs=$work agrees 0 "${CC:-cc} -std=c99" "$level -ffp-contract=off" "$spec"
+	fi
 	specs=$work agrees 0 "${CC:-cc} -std=c99" "$level -march=native -ffp-contract=off" "$spec"
 	! grep -q 'by itself:' m.h
 	result $? "$spec: its steps without events are in lanes"
@@ -446,6 +449,7 @@ opencl=
 kernel() {
 	spec=$1
 	shift
+	one_of 3 || return 0
 	chosen "kernel of $spec $*" || return 0
 	what="-DHAS_INPUTS=1"
 	{
@@ -460,8 +464,8 @@ kernel() {
 			${CC:-cc} kernel.o m.o m_kernel.o "$archive" -lm $openmp -o kernel && ./kernel
 	} >log 2>&1
 	result $? "kernel of $spec${*:+ $*}: the bits of the batch"
-	# a second for each: with LONG=1 all
-	case $spec in *oscillator* | blocks* | cubes3*) ;; *) [ -n "${LONG:-}" ] || return 0 ;; esac
+	# a second for each
+	case $spec in *oscillator* | blocks* | cubes3*) ;; *) merging || return 0 ;; esac
 	name="... by OpenCL"
 	{
 		"$plgen" --target opencl --prefix m "$@" "$(root=$specs path_of "$spec")" >m.cl &&

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other
-# roads, every second set that gen/model/capability.def refuses, with MERGE=1 or LONG=1 in the environment every one, is
-# refused with its message, as TAP; and doc/combinations.md is what comes out of these. Of the C every sixth row has
-# sanitizers; with LONG=1 all have, optimised.
+# roads, every fourth set that gen/model/capability.def refuses, with MERGE=1 or LONG=1 in the environment every one, is
+# refused with its message, as TAP; and doc/combinations.md is what comes out of these. Of the C every 18th row has
+# sanitizers, with MERGE=1 every sixth; with LONG=1 all have, optimised.
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
 set -u
@@ -97,7 +97,8 @@ if [ "${5:-}" = --pairs ]; then
 	exit
 fi
 
-every=6
+every=18
+! merging || every=6
 batch_new
 number=0
 "$covering" rows "$list" >rows || exit 99
@@ -106,8 +107,7 @@ while read -r row; do
 	# shellcheck disable=SC2086
 	"$covering" spec "r$number.spec" $row || exit 99
 	batch_add "r$number" "r$number.spec"
-	# one of three in turn, with LONG=1 all
-	[ "$said" != made ] || { [ -z "${LONG:-}" ] && [ $((number % 3)) -ne 0 ]; } || is_program "r$number"
+	[ "$said" != made ] || ! one_of 9 || is_program "r$number"
 	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
 	[ "$said" != made ] || stands_aside "r$number"
 	for function in at jump; do
@@ -136,7 +136,7 @@ done <rows
 number=0
 while IFS="$tab" read -r row reason; do
 	number=$((number + 1))
-	merging || [ $((number % 2)) -eq 1 ] || continue
+	one_of 4 || continue
 	# shellcheck disable=SC2086
 	"$covering" spec p.spec $row || exit 99
 	words=$(words_of p "$row")

@@ -49,6 +49,7 @@ dropped() {
 
 for mass in 0.5 1 2 3 20; do
 	for e in 0 0.2 0.5; do
+		one_of 3 || continue
 		dropped $mass $e 0
 		dropped $mass $e 0.3
 	done

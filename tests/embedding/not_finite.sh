@@ -151,7 +151,7 @@ q[4]'' + q[4]^3 + (q[4] - q[3])^3 + (q[4] - q[5])^3 = 0
 q[5]'' + q[5]^3 + (q[5] - q[4])^3 + (q[5] - q[6])^3 = 0
 q[6]'' + q[6]^3 + (q[6] - q[5])^3 = 0
 EOF
-[ "${LONG:-}" ] || apart=8        # twelve states, and steps that are halved until they are given up
+[ "${LONG:-}" ] || apart=16       # twelve states, and steps that are halved until they are given up
 each 'a chain' auto
 apart=1
 
@@ -165,7 +165,7 @@ x'' + k*(x - y)^3 = u
 y'' + k*(y - x)^3 = 0
 EOF
 each 'tunable, moving as a whole' taylor
-[ "${LONG:-}" ] || apart=4        # as above
+[ "${LONG:-}" ] || apart=12       # as above
 each 'tunable, moving as a whole' auto
 apart=1
 

@@ -57,6 +57,7 @@ check() {
 
 for spec in "$cases"/*.spec; do
 	name=$(basename "$spec" .spec)
+	[ "$name" != reaction_curved ] || merging || continue         # a second and a half
 	check "$name" "$name" ""
 	sed -n 's/^scheme //p' "$cases/$name.values" >schemes
 	while read -r scheme within <&3; do
@@ -123,15 +124,17 @@ while read -r name; do
 	result $? "$name: linear equations as in minimal coordinates"
 done <pairs
 # Of a linkage there are two ways to close it: its equilibria are those of one, and others
-for name in four_bar four_bar.minimal; do
-	"$PLGEN" --equilibrium "$name.spec" 2>>log |
-		sed -n 's/^[0-9]*: a = \([^,;]*\).*; /a \1 /p; s/^    *[-0-9]/&/p' >"$name.found"
-done
-sort -u four_bar.found >both
-sort -u four_bar.minimal.found | comm -23 - both >log
-cat four_bar.minimal.found >>log
-test "$(wc -l <four_bar.minimal.found)" -eq 5 && test "$(wc -l <log)" -eq 5
-result $? 'equilibria of a linkage, and their poles, as in minimal coordinates'
+if merging; then
+	for name in four_bar four_bar.minimal; do
+		"$PLGEN" --equilibrium "$name.spec" 2>>log |
+			sed -n 's/^[0-9]*: a = \([^,;]*\).*; /a \1 /p; s/^    *[-0-9]/&/p' >"$name.found"
+	done
+	sort -u four_bar.found >both
+	sort -u four_bar.minimal.found | comm -23 - both >log
+	cat four_bar.minimal.found >>log
+	test "$(wc -l <four_bar.minimal.found)" -eq 5 && test "$(wc -l <log)" -eq 5
+	result $? 'equilibria of a linkage, and their poles, as in minimal coordinates'
+fi
 # Second derivatives of sines are shifts: a link of a chain takes 4 products of sequences, where it took 13
 for model in chain robot_arm; do
 	"$PLGEN" --scheme taylor "$root/models/$model.spec" 2>>log |

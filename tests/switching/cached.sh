@@ -70,12 +70,14 @@ beside() {
 	near tables few 2e-13 "$4, $3 matrices kept: as by tables of all regions"
 }
 beside 5 "$one" 3 '5 stops'
-beside 4 "$two" 4 '4 stops on both sides'
+! merging || beside 4 "$two" 4 '4 stops on both sides'
 beside 4 "$rubs" 8 '4 masses on belts'
-beside 4 "$slides" 8 '4 sliders without mass'
-stops many 12 "$rubs" && run many 0.3
-stops series 12 "$rubs" 'scheme taylor' 'tolerance 1e-14' && run series 0.3
-near many series 2e-12 '12 masses on belts: as by a Taylor series from event to event'
+! merging || beside 4 "$slides" 8 '4 sliders without mass'
+if merging; then
+	stops many 12 "$rubs" && run many 0.3
+	stops series 12 "$rubs" 'scheme taylor' 'tolerance 1e-14' && run series 0.3
+	near many series 2e-12 '12 masses on belts: as by a Taylor series from event to event'
+fi
 stops many 12 "$one" && run many 0.5
 stops series 12 "$one" 'scheme taylor' 'tolerance 1e-14' && run series 0.5
 near many series 2e-12 '12 stops, by default: as by a Taylor series from crossing to crossing'

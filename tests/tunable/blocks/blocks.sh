@@ -82,7 +82,7 @@ fi
 solved="m=3 J=0.25 k=130 F=2"
 for h in $steps; do
 	beside 20 solved "$solved" "$h"
-	beside 20 solved "$solved" "$h" --real float --form direct
+	! merging || beside 20 solved "$solved" "$h" --real float --form direct
 done
 refused 4 0 'a mass matrix without inverse: PL_SINGULAR' 0 0 100 3
 refused 1 0 'one that is not a number' nan 0.5 100 3
