@@ -59,6 +59,8 @@ struct segment_equations {          /* the equations and outputs in one interval
 	const struct form *energy[2]; /* T and V of all statements; NULL: there is none */
 	bool negative_kinetic;      /* nothing shows that no T of energies is below 0 */
 	struct form **multiplier;   /* solved for */
+	/* beside eliminated constraints, per derivative: coordinates as outputs read them; NULL: as they are */
+	struct form **form[3];
 };
 
 /* ---- equations.c: equations and sketches to residuals ---- */

@@ -116,6 +116,20 @@ static struct form *independent(const struct elimination *e, const struct form *
 	return sum;
 }
 
+/* Accelerations of dependent ones without what holds them: a^2 times rounding would be seen */
+static void take_accelerations(const struct elimination *e)
+{
+	const int n = e->b->model->n;
+	for (int order = 0; order < 3; order++) {
+		e->s->form[order] = ARRAY(struct form *, n);
+		for (int j = 0; j < n; j++) {
+			struct form *own = form_unit((struct basis){ .kind = BASIS_COORD, .index = j, .order = order });
+			e->s->form[order][j] = order == 2 && e->follows[1][j]
+				? form_difference(own, e->s->residual[e->b->owner[j]].form) : own;
+		}
+	}
+}
+
 /* x'' - its acceleration + 2 a (x' - what it follows from) + a^2 (x - ...); a x' - ... of a constraint on velocities */
 static void hold_dependent(const struct elimination *e, int coord)
 {
@@ -145,6 +159,8 @@ void eliminate_dependent(struct building *b, struct segment_equations *s)
 		s->residual[i].form = independent(&e, s->residual[i].form);
 	for (int i = 0; i < b->spec->count.multipliers && b->eliminates; i++)
 		s->multiplier[i] = independent(&e, s->multiplier[i]);
+	if (b->eliminates)
+		take_accelerations(&e);
 	for (int j = 0; j < b->model->n && b->eliminates; j++)
 		if (e.follows[1][j])
 			hold_dependent(&e, j);

@@ -163,7 +163,9 @@ static const char *component_name(const char *name, int component)
 void collect_outputs(struct building *b, struct segment_equations *segment_equations)
 {
 	int index = 0;
+	struct form **const *form = b->model->frame.form;
 	segment_equations->output = ARRAY(struct value *, b->spec->count.outputs);
+	b->model->frame.form = segment_equations->form[0] ? segment_equations->form : form;
 	b->collector.tolerant = b->collector.reading = true;
 	b->collector.multiplier = segment_equations->multiplier;
 	b->collector.output = segment_equations->multiplier != NULL;
@@ -175,6 +177,7 @@ void collect_outputs(struct building *b, struct segment_equations *segment_equat
 		segment_equations->output[index++] = work.value;
 	}
 	b->collector.tolerant = b->collector.reading = b->collector.output = false;
+	b->model->frame.form = form;
 }
 
 /* An output is a row over states and loads if it is so in all segments of time, with the same states. */
@@ -196,12 +199,17 @@ static void collect_left(void *context)
 {
 	struct output_work *work = context;
 	struct collector *c = &work->b->collector;
+	const struct segment_equations *of = work->b->full ? work->b->full : work->b->segment_equations;
+	struct form **const *form = work->b->model->frame.form;
 	int keep = (int)c->keep;
 	c->keep = KEEP_ALL;
 	c->whole_time = c->output = c->reading = true;
-	c->multiplier = (work->b->full ? work->b->full : work->b->segment_equations)->multiplier;
+	c->multiplier = of->multiplier;
+	if (of->form[0] && work->b->model->system.segments == 1)
+		work->b->model->frame.form = of->form;
 	forget_lets(work->b->spec);
 	collect_output(work);
+	work->b->model->frame.form = form;
 	c->keep = (unsigned)keep;
 	c->whole_time = c->output = c->reading = false;
 	for (struct symbol *s = work->b->spec->first; s; s = s->next)

@@ -4,6 +4,7 @@
 #include "capability.h"
 #include "state_mass.h"
 #include "checks.h"
+#include "model/contacts/contacts.h"
 #include "model/contacts/friction.h"
 
 struct change {                     /* of formula in time */
@@ -126,6 +127,17 @@ static bool is_plain_constraint(const struct building *b, int index)
 	return plain;
 }
 
+/* Where loads change their formula, a multiplier that an output has by itself has rows; what else is made of it may
+ * not be linear. */
+static bool reads_plain_multipliers(const struct building *b)
+{
+	bool plain = true;
+	for (const struct symbol *s = b->spec->first; s && b->model->system.segments > 1; s = s->next)
+		plain = plain && (s->kind != SYMBOL_OUTPUT || !multiplier_in(s->value) ||
+				  (s->value->kind == NODE_NAME && s->value->symbol->kind == SYMBOL_MULTIPLIER));
+	return plain;
+}
+
 /* Whether constraints leave equations that are linear, in which nothing is tuned or derived by, and scheme exact takes
  * them: as they are collected, before elements are added */
 static bool may_eliminate(const struct building *b)
@@ -136,7 +148,7 @@ static bool may_eliminate(const struct building *b)
 		   b->model->contacts.impacts == 0 && spec->whens == 0 && spec->tuned.count == 0 &&
 		   spec->sensitivities == 0 && !request->sensitivity && !request->passed_over &&
 		   !request->loads_left && !request->linear.where && !spec->operators.given &&
-		   !spec->modes.at.source && !request->modes && !request->reduce;
+		   !spec->modes.at.source && !request->modes && !request->reduce && reads_plain_multipliers(b);
 	for (int i = 0; i < spec->count.multipliers && may; i++)
 		may = is_plain_constraint(b, i);
 	return may;

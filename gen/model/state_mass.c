@@ -10,6 +10,8 @@
 #include "checks.h"
 #include "state_mass.h"
 
+#include <math.h>
+
 struct solving {
 	struct building *b;
 	struct segment_equations *s;
@@ -184,10 +186,12 @@ static void find_blocks(struct solving *w)
 	w->block = ARRAY(int, 2 * w->n);
 	for (int i = 0; i < 2 * w->n; i++)
 		w->block[i] = i;
-	for (int i = 0; i < w->n; i++)
+	for (int i = 0; i < w->n; i++) {
+		join_nodes(w->block, row_of(w, i), w->n + i); /* also where it has no mass, as -x = 0 may hold it */
 		for (int j = 0; j < w->n; j++)
 			if (w->M[i * w->n + j]->terms)
 				join_nodes(w->block, i, w->n + j);
+	}
 }
 
 /* Without constraints */
@@ -209,13 +213,52 @@ static const struct node *node_of_row(const struct solving *w, int row)
 	return row >= w->coords ? w->s->constraint[row - w->coords].statement->value : atom ? atom->node : NULL;
 }
 
-/* Whether some coordinate has no mass of its own, in whatever state */
-static bool lacks_mass(const struct solving *w, int n, const int *order)
+/* The system where the spec starts; what follows from inputs is 0 */
+static double *system_at_start(const struct solving *w, int n, const struct form *const *M)
 {
-	bool lacks = false;
-	for (int i = 0; i < n; i++)
-		lacks = lacks || (order[i] < w->coords && w->M[row_of(w, order[i]) * w->n + order[i]]->terms == 0);
-	return lacks;
+	struct point *start = point_at_state(w->b, w->b->model->initial, NULL);
+	double *value = ARRAY(double, n * n);
+	RATIONAL entry = ZERO;
+	for (int i = 0; i < n * n; i++) {
+		const struct form *here = M[i]->terms ? form_at(start, M[i]) : M[i];
+		if (here->terms == 0 || !is_constant(here))
+			continue;
+		constant_value(&w->b->collector, here, entry);
+		value[i] = mpq_get_d(entry);
+	}
+	return value;
+}
+
+/* Whether elimination in this order meets a coordinate whose pivot is rounding, at the start: x' + y' is all that T
+ * reads of x and y */
+static bool cancels(int n, double *M, int coords, const int *order)
+{
+	SCRATCH double *own = ARRAY(double, n);
+	for (int k = 0; k < n; k++)
+		own[k] = fabs(M[k * n + k]);
+	for (int k = 0; k < n; k++) {
+		const double pivot = M[k * n + k];
+		if (order[k] < coords && fabs(pivot) <= 1e-12 * own[k])
+			return true;
+		for (int i = k + 1; i < n && pivot != 0; i++)
+			for (int j = k + 1; j < n; j++)
+				M[i * n + j] -= M[i * n + k] / pivot * M[k * n + j];
+	}
+	return false;
+}
+
+/* Whether some coordinate beside constraints has no mass of its own, in whatever state, or none that others leave */
+static bool lacks_mass(const struct solving *w, int n, const int *order, const struct form *const *M)
+{
+	bool lacks = false, held = false;
+	for (int i = 0; i < n; i++) {
+		held = held || order[i] >= w->coords;
+		lacks = lacks || (order[i] < w->coords && M[i * n + i]->terms == 0);
+	}
+	if (lacks || !held || w->b->request->again.tunable)
+		return lacks;
+	SCRATCH double *start = system_at_start(w, n, M);
+	return cancels(n, start, w->coords, order);
 }
 
 /* To the row of a coordinate G^T times those of its constraints, which are 0: M + G^T G has pivots where M has none. */
@@ -297,7 +340,8 @@ static void solve_block(struct solving *w, int block)
 		return;
 	for (int i = 0; i < n * n && terms; i++)
 		M[i] = form_difference(M[i], terms->slope[i]);
-	for (int i = 0; i < n && lacks_mass(w, n, order); i++)
+	const bool lacks = lacks_mass(w, n, order, M);
+	for (int i = 0; i < n && lacks; i++)
 		add_constraints(w, n, order, i, M, f, F);
 	for (int i = 0; i < n && terms; i++)
 		F[i] = form_sum(F[i], terms->N[i], false);

@@ -167,8 +167,7 @@ static void refuse_acceleration(const struct building *b, const struct output *o
 			refuse(CAN_ACCELERATION, b->model, output->value->start);
 }
 
-/* A multiplier as a text has it, through lets */
-static const struct node *multiplier_in(const struct node *node)
+const struct node *multiplier_in(const struct node *node)
 {
 	const struct symbol *symbol = node->kind == NODE_NAME ? node->symbol : NULL;
 	const struct node *found = symbol && symbol->kind == SYMBOL_MULTIPLIER ? node : NULL;

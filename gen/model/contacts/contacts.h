@@ -132,6 +132,7 @@ bool has_events(const struct switching *s);                 /* each region has i
 
 /* ---- contacts.c: impacts and friction beside what is not piecewise linear ---- */
 
+const struct node *multiplier_in(const struct node *node);  /* as a text has it, through lets; NULL: there is none */
 void find_contacts(struct building *b);                     /* of the equations for all time */
 void place_contact_loads(struct building *b);
 void check_contact_outputs(struct building *b);             /* says what they cannot read */
