@@ -20,6 +20,8 @@
 #undef pl_entries_in
 #undef pl_formulas
 #undef pl_formulas_at
+#undef pl_formulas_slope
+#undef pl_entries_slope
 #undef pl_events
 #undef pl_events_begin
 #undef pl_events_end

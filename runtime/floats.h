@@ -20,6 +20,8 @@
 #define pl_entries_in pl_entriesf_in
 #define pl_formulas pl_formulasf
 #define pl_formulas_at pl_formulasf_at
+#define pl_formulas_slope pl_formulasf_slope
+#define pl_entries_slope pl_entriesf_slope
 #define pl_events pl_eventsf
 #define pl_events_begin pl_eventsf_begin
 #define pl_events_end pl_eventsf_end

@@ -297,6 +297,11 @@ PL_REAL pl_series_switching_next(const pl_series_switching *m, const PL_REAL *c,
  * of both numbers; a difference that may be rounding alone is set to 0.  So the error of a sum of products is below
  * 2^-101 (in floats 2^-43) of the sum of sizes of its terms. */
 int pl_formulas_at(const pl_formulas *f, const PL_REAL *params, pl_two *made);
+/* slope <- their derivatives, where those of the params are `by` */
+void pl_formulas_slope(const pl_formulas *f, const PL_REAL *params, const pl_two *made, const PL_REAL *by,
+                       pl_two *slope);
+/* The derivative of the number at a place */
+PL_REAL pl_entries_slope(const pl_place *p, const pl_formulas *f, const PL_REAL *by, const pl_two *slope);
 
 /* Sets `value` to the entries, rows x columns; of a matrix with columns for several segments of time to those of one:
  * of `loads` columns behind the first `before` in each segment, and those behind them all; rows from `before` on are

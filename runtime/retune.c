@@ -85,6 +85,38 @@ int pl_formulas_at(const pl_formulas *f, const real *params, pl_two *made)
     return 0;
 }
 
+/* The derivative of number i */
+static pl_two slope_of(const pl_formulas *f, const real *by, const pl_two *slope, int i)
+{
+    const int first = f->params + f->constants;
+    return i < f->params ? two(by[i], 0) : i < first ? two(0, 0) : slope[i - first];
+}
+
+void pl_formulas_slope(const pl_formulas *f, const real *params, const pl_two *made, const real *by,
+                       pl_two *slope)
+{
+    int i;
+    for (i = 0; i < f->operations; i++) {
+        const pl_operation *const o = f->operation + i;
+        const pl_two a = number_of(f, params, made, o->a), b = number_of(f, params, made, o->b);
+        const pl_two da = slope_of(f, by, slope, o->a), db = slope_of(f, by, slope, o->b);
+        const real sign = o->what == PL_SUM ? 1 : -1;
+        if (o->what == PL_PRODUCT) {
+            slope[i] = normal(plus_product(plus_product(two(0, 0), da, b), a, db));
+        } else if (o->what == PL_QUOTIENT) {
+            slope[i] = quotient(normal(plus_product(da, two(-made[i].hi, -made[i].lo), db)), b);
+        } else {
+            slope[i] = normal(plus_product(da, two(sign, 0), db));
+        }
+    }
+}
+
+real pl_entries_slope(const pl_place *p, const pl_formulas *f, const real *by, const pl_two *slope)
+{
+    const real s = slope_of(f, by, slope, p->number).hi;
+    return p->negative ? -s : s;
+}
+
 int pl_entries_in(const pl_entries *m, const pl_formulas *f, const real *params, const pl_two *made, int before,
                   int loads, int segments, int segment, pl_two *value)
 {

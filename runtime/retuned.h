@@ -17,6 +17,10 @@
  *                                        too, 2: above 0, 3: below 0
  *     PL_FROM, PL(from)[]                per row of an instance's tables where it is found among the numbers, from 1;
  *                                        below 0: with the other sign, 0: it stays. 0: all do
+ *     PL_COLUMNS_D                       derivatives, whose tables are an instance's too; 0: none
+ *     PL(vary_params)(params, by)        how params vary with each column
+ *     PL(varied_number)[]                of each, where the derivative of a number goes: the row is an entry of
+ *                                        c->varied
  *     PL_HALVINGS, PL_RUNGS              of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
  *     PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their
@@ -274,6 +278,30 @@ static void PL(gather)(PL(coeffs) *c)
 }
 #endif
 
+#if PL_COLUMNS_D > 0
+/* ---- derivatives of the tables: those of the formulas ---- */
+
+static int PL(take_varied)(PL(coeffs) *c, const real params[PL_PARAMS], const pl_two *made)
+{
+    pl_two slope[PL_OPERATIONS + 1];
+    real by[PL_COLUMNS_D][PL_PARAMS];
+    int p, i, status = 0;
+    PL(vary_params)(params, by);
+    for (p = 0; p < PL_COLUMNS_D; p++) {
+        const pl_entries *const to = &PL(varied_number)[p];
+        if (to->places > 0) {
+            pl_formulas_slope(&PL(formulas), params, made, by[p], slope);
+        }
+        for (i = 0; i < to->places; i++) {
+            const real value = pl_entries_slope(to->place + i, &PL(formulas), by[p], slope);
+            c->varied[to->place[i].row].value = value;
+            status = value - value == 0 ? status : PL_NOT_FINITE;
+        }
+    }
+    return status;
+}
+#endif
+
 /* ---- all ---- */
 
 #if PL_WRAPPED
@@ -300,6 +328,11 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #if PL_CHECKS > 0
     if (status == 0 && PL(out_of_range)(value)) {
         status = PL_OUT_OF_RANGE;
+    }
+#endif
+#if PL_COLUMNS_D > 0
+    if (status == 0) {
+        status = PL(take_varied)(&fresh, params, made);
     }
 #endif
     if (status != 0) {

@@ -452,7 +452,7 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
     v.matrices = PL_MATRICES_D;
     v.degree = PL_DEGREE_D;
     v.first = PL(varied_first);
-    v.entry = PL(varied);
+    v.entry = PL_OF(varied);
     v.over = PL_VARIED_STEP;
     v.segment = v.pending = v.sticks = v.upward = 0;
     v.function = v.last = -1;

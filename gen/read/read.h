@@ -254,8 +254,8 @@ struct sensitivity {                /* what derivatives are by: a param, a state
 };
 struct spec;
 bool is_zero_node(const struct node *node);
-/* By a param, of t - d of a delayed input, at fixed t */
-struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *by, const struct symbol *delayed);
+/* By a param, at fixed t, of what reads neither states nor inputs */
+struct node *slope_by_param(const struct spec *spec, const struct sensitivity *by, struct node *node);
 struct assembly_part {                    /* of an assembly: a spec in it, as often as `use` names it */
 	const char *name;           /* front; inside another: half.front */
 	const char *file;           /* as written */

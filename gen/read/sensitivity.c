@@ -470,13 +470,13 @@ static const char *suffix_of(const struct sensitivity *s)
 	return s->symbol->kind == SYMBOL_COORD ? format("%s%s_0", name, s->primes ? "_dot" : "") : name;
 }
 
-struct node *slope_of_delay(const struct spec *spec, const struct sensitivity *by, const struct symbol *delayed)
+struct node *slope_by_param(const struct spec *spec, const struct sensitivity *by, struct node *node)
 {
 	struct slope slope = { .at = by->at, .kind = SLOPE_PARAM, .name = by->name };
 	slope.param = by->symbol->kind == SYMBOL_PARAM ? by->symbol : NULL;
 	slope.moved = ARRAY(struct symbol *, (size_t)spec->count.symbols + 1);
 	slope.known = ARRAY(struct node *, (size_t)spec->count.symbols + 1);
-	return slope_by(delayed->when, slope);
+	return slope_by(node, slope);
 }
 
 void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder)

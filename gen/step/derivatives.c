@@ -154,7 +154,7 @@ static void derive_delays(const struct step *step, struct derivatives *d)
 		if (by->symbol->kind == SYMBOL_INPUT)
 			error(by->at, NULL, "a derivative along '%s' is not built beside delayed inputs", by->name);
 		for (int k = 0; k < delays->count; k++) {
-			struct node *node = slope_of_delay(step->model->spec, by, delays->delay[k].symbol);
+			struct node *node = slope_by_param(step->model->spec, by, delays->delay[k].symbol->when);
 			if (is_zero_node(node))
 				continue;
 			if (has_remainder(step) || step->model->switching || has_peak(step->model))
@@ -174,7 +174,7 @@ static void derive(void *context)
 	check_derivable(step);
 	struct derivatives *d = NEW(struct derivatives);
 	*d = (struct derivatives){ .columns = spec->sensitivities, .column = spec->sensitivity,
-				    .apart = goes_apart(step) };
+				    .apart = !step->model->switching && goes_apart(step) };
 	for (int i = 0; i < d->columns; i++)
 		d->seeded = d->seeded || d->column[i].symbol->kind == SYMBOL_INPUT;
 	if (step->model->delays)

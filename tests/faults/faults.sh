@@ -84,7 +84,7 @@ mkdir -p "$folder" && folder=$(cd "$folder" && pwd) || exit 99
 # head_of NAME WORD: what the head says of it
 head_of()
 {
-	sed -n "s/^# $2: *//p; /^--- /q" "$here/$1.patch"
+	sed -n "s/^# $2: *//p; /^+++ /q" "$here/$1.patch"
 }
 
 # accepts TREE FILE PATCH: with the context as it is
@@ -161,8 +161,8 @@ refresh()
 	file=$(file_of "$root" "$1") || { echo "$1: applies to no file"; return 1; }
 	cp "$root/$file" "$work/old" && cp "$work/old" "$work/new" || return 1
 	patch -s -f -F 0 "$work/new" "$here/$1.patch" || return 1
-	sed '/^--- /,$d' "$here/$1.patch" >"$work/patch"
-	diff -u --label "a/$file" --label "b/$file" "$work/old" "$work/new" >>"$work/patch"
+	sed '/^\(---\|+++\) /,$d' "$here/$1.patch" >"$work/patch"
+	diff -u --label "a/$file" --label "b/$file" "$work/old" "$work/new" | sed 1d >>"$work/patch"
 	cmp -s "$work/patch" "$here/$1.patch" || { cp "$work/patch" "$here/$1.patch" && echo "$1: $file"; }
 }
 

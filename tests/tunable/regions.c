@@ -144,6 +144,37 @@ static void scattered(retuned *a, plain *b)
 	ok(worst <= tolerance, "and go where those with the values written go within %.0e (%.2g)", tolerance, worst);
 }
 
+#ifdef HAS_DERIVATIVES
+/* Column by column what lies farthest apart, of the largest, after use in the middle of a run too */
+static void derivatives(retuned *a, plain *b, const retuned_coeffs *fresh)
+{
+	static real S[RETUNED_D][RETUNED_STATES], T[RETUNED_D][RETUNED_STATES];
+	double worst[RETUNED_D] = {0}, most[RETUNED_D] = {0};
+	retuned_d *da = malloc(sizeof *da);
+	plain_d *db = malloc(sizeof *db);
+	retuned_init_d(a, da);
+	retuned_use(a, fresh);
+	plain_init_d(b, db);
+	for (int k = 0; k < STEPS; k++) {
+		retuned_derivatives.step(a, da, sample(k), NULL);
+		plain_derivatives.step(b, db, sample(k), NULL);
+		retuned_get_d(a, da, S);
+		plain_get_d(b, db, T);
+		for (int p = 0; p < RETUNED_D; p++)
+			for (int i = 0; i < RETUNED_STATES; i++) {
+				worst[p] = worse(worst[p], fabs((double)S[p][i] - (double)T[p][i]));
+				most[p] = fmax(most[p], fabs((double)T[p][i]));
+			}
+	}
+	for (int p = 0; p < RETUNED_D; p++)
+		ok(most[p] > 0 && worst[p] <= tolerance * most[p], "derivatives by %s: as with the values written "
+			"(%.2g of %.2g)", retuned_derivatives.names[p], worst[p], most[p]);
+	ok(da->status == db->status, "with the same status (%u, %u)", da->status, db->status);
+	free(da);
+	free(db);
+}
+#endif
+
 static void copies(retuned *a)
 {
 	retuned *saved = malloc(sizeof *saved), *again = malloc(sizeof *again);
@@ -211,6 +242,9 @@ int main(void)
 	retuned_init(a);
 	retuned_use(a, fresh);
 	scattered(a, b);
+#endif
+#ifdef HAS_DERIVATIVES
+	derivatives(a, b, fresh);
 #endif
 	refusals(fresh);
 	retuned_init(a);

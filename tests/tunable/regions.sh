@@ -3,7 +3,7 @@
 # regions.sh PLGEN SOURCE REAL FILE.cases: models with regions whose matrices tunable params change, each as it is
 # written (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every
 # fifth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`:
-# values that NAME_retune refuses.
+# values that NAME_retune refuses; `#by NAME,...`: derivatives by these are compared, too.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
 real=$3
@@ -26,6 +26,8 @@ while read -r name; do
 	for pair in $there; do
 		defines="$defines -D $pair"
 	done
+	by=$(sed -n 's/^#by //p' "$spec")
+	[ -z "$by" ] || by="--sensitivity $by"
 	grep -v '^tunable' "$spec" >plain.spec
 	awk '/^tunable/ { gsub(/,/, " "); for (i = 2; i <= NF; i++) order[i - 1] = $i; n = NF - 1 }
 		/^#there/ { for (i = 2; i <= NF; i++) { split($i, pair, "="); value[pair[1]] = pair[2] } }
@@ -47,8 +49,9 @@ while read -r name; do
 		float='-DREAL_FLOAT'
 	fi
 	# shellcheck disable=SC2086
-	"$plgen" --real "$real" --prefix retuned "$spec" -o retuned.c >log 2>&1 &&
-		"$plgen" --real "$real" --prefix plain $defines plain.spec -o plain.c >>log 2>&1 &&
+	"$plgen" --real "$real" --prefix retuned $by "$spec" -o retuned.c >log 2>&1 &&
+		"$plgen" --real "$real" --prefix plain $by $defines plain.spec -o plain.c >>log 2>&1 &&
+		{ [ -z "$by" ] || echo '#define HAS_DERIVATIVES' >>refused.h; } &&
 		{ ! grep -q ' slopes\[' retuned.h || echo '#define HAS_MATRICES' >>refused.h; } &&
 		$compile -I. -I"$source/runtime" -I"$source/tests/emitted" $float "$source/tests/tunable/regions.c" \
 			retuned.c plain.c "$source/tests/emitted/tap.c" $PLRT -lm -o regions >>log 2>&1 &&

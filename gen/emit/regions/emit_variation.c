@@ -28,9 +28,41 @@ static void emit_varied_load(const struct emitter *e, int column, int load, int 
 	}
 }
 
+int varies_params(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	return d && d->varied && (e->model->params.retuned || e->model->spec->tuned.derived > 0);
+}
+
+/* Params that act as inputs do, and vary as NAME_vary_params says */
+static void declare_varied_params(const struct emitter *e)
+{
+	if (varies_params(e))
+		say(e, "    double by[$N_D][%d];\n", tunables_of(e->model)->params);
+}
+
+static void emit_params_now(const struct emitter *e)
+{
+	if (varies_params(e))
+		say(e, "    $n_vary_params(s->coeffs.params, by);\n");
+}
+
+static void emit_varied_tunables(const struct emitter *e, int column, const struct layout *x)
+{
+	const int by = tunable_of_column(e->step, column);
+	for (int i = 0; i < e->system->inputs && by >= 0; i++) {
+		const int param = param_of_input(e->model->spec, place_of_input(e, i));
+		if (param >= 0 && varies_params(e))
+			say(e, "    S[%d][%d] = by[%d][%d];\n", column, x->input[i], column, param);
+		else if (param == by)
+			say(e, "    S[%d][%d] = 1.0;\n", column, x->input[i]);
+	}
+}
+
 static void emit_varied_input(const struct emitter *e, int column)
 {
 	const struct sensitivity *by = &e->step->shown->derivatives->column[column];
+	emit_varied_tunables(e, column, &e->step->layout);
 	for (int i = 0; i < e->system->inputs && by->symbol->kind == SYMBOL_INPUT; i++) {
 		const int of = place_of_input(e, i), at = e->step->layout.input[i];
 		const char *now = format("(du == NULL ? 0.0 : du[%d])", of);
@@ -73,11 +105,13 @@ static void emit_varied_step(const struct emitter *e)
 	say(e, "    pl_contact contact = %s;\n"
 	       "    const double t = $n_time(s);\n"
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
+	declare_varied_params(e);
 	declare_region_vector(e);
 	emit_load_states(&loads, needed, true);
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
 		say(e, "    $n_get(s, x);\n");
+	emit_params_now(e);
 	for (int p = 0; p < e->step->shown->derivatives->columns; p++) {
 		for (int l = 0; l < e->system->loads; l++)
 			if (needed[l])
@@ -170,6 +204,7 @@ static void emit_columns_now(const struct emitter *e, const struct layout *x)
 	open_function(e, NULL, "static void $n_columns(const $n *s, const $n_d *ds, double x[%d], double S[$N_D][%d])",
 		      x->size, x->size);
 	say(e, "    const double t = $n_time(s);\n");
+	declare_varied_params(e);
 	for (int l = 0; l < e->system->loads; l++)
 		needed[l] = x->load[l] >= 0;
 	emit_load_states(e, needed, true);
@@ -181,8 +216,11 @@ static void emit_columns_now(const struct emitter *e, const struct layout *x)
 		}
 	for (int i = 0; i < e->system->inputs; i++)
 		for (int k = 0; k <= e->system->input[i].hold; k++)
-			say(e, "    x[%d] = s->%s[%d];\n", x->input[i] + k, k ? "slope" : "u", place_of_input(e, i));
+			say(e, "    x[%d] = %s;\n", x->input[i] + k,
+			    k ? format("s->slope[%d]", place_of_input(e, i)) : sample_kept(e, i));
+	emit_params_now(e);
 	for (int p = 0; p < d->columns; p++) {
+		emit_varied_tunables(e, p, x);
 		for (int l = 0; l < e->system->loads; l++)
 			if (needed[l])
 				emit_varied_load(e, p, l, x->load[l]);
@@ -200,7 +238,7 @@ int emit_varied_outputs(const struct emitter *e)
 	emit_output_rows(e, &x);
 	put_wholes(e, false, "out_first", "Where the derivatives of rows begin, of each column in each segment of time",
 		   v.blocks + 1, v.first);
-	put_entries(e, "out_varied", &v);
+	put_entries(e, false, "out_varied", &v);
 	emit_columns_now(e, &x);
 	return x.size;
 }

@@ -51,8 +51,9 @@ void emit_fast_path_tables(const struct emitter *e, const struct pieces *p, cons
 
 bool has_variation(const struct emitter *e);                      /* the step has derivatives beside it */
 void emit_variation(const struct emitter *e, const struct guards *guards); /* tables of how tables vary */
+void emit_own_variation(const struct emitter *e, const struct guards *guards); /* what of them an instance has */
 struct variation;
-void put_entries(const struct emitter *e, const char *name, const struct variation *v);
+void put_entries(const struct emitter *e, bool own, const char *name, const struct variation *v);
 void emit_variation_macros(const struct emitter *e);
 const char *no_variation(const struct emitter *e);                /* a last argument of the search; or nothing */
 

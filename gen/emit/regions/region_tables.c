@@ -389,15 +389,15 @@ bool has_variation(const struct emitter *e)
 	return e->step->shown->derivatives && e->step->shown->derivatives->varied;
 }
 
-void put_entries(const struct emitter *e, const char *name, const struct variation *v)
+void put_entries(const struct emitter *e, bool own, const char *name, const struct variation *v)
 {
-	open_table(e, "pl_varied", name, format("[%d]", v->entries ? v->entries : 1),
+	open_as(e, own, "pl_varied", name, format("[%d]", v->entries ? v->entries : 1),
 		   "Derivatives of the tables above, where they are not 0: row, column");
 	for (int i = 0; i < v->entries; i++)
 		say(e, "    { %d, %d, %s },\n", v->entry[i].row, v->entry[i].column, shortest(v->entry[i].value));
 	if (!v->entries)
 		say(e, "    { 0, 0, 0.0 }\n");
-	close_table(e);
+	close_as(e, own);
 }
 
 static void emit_varied_steps(const struct emitter *e, const double *over)
@@ -422,10 +422,19 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 	put_wholes(e, false, "varied_first", "Where the derivatives of each table begin, column by column: A of each "
 		   "linear system, switching functions, breakpoints, guards, assignments, times of changes",
 		   v.blocks + 1, v.first);
-	put_entries(e, "varied", &v);
+	if (!e->model->params.retuned)
+		put_entries(e, false, "varied", &v);
 	if (v.over)
 		emit_varied_steps(e, v.over);
 	say_macro(e, "VARIED_STEP", v.over ? spell(e, "$o_varied_step[0]") : "NULL");
+}
+
+void emit_own_variation(const struct emitter *e, const struct guards *g)
+{
+	if (!has_variation(e))
+		return;
+	const struct variation v = variation_of(e->step, -1, g);
+	put_entries(e, true, "varied", &v);
 }
 
 void emit_variation_macros(const struct emitter *e)

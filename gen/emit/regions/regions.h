@@ -8,6 +8,7 @@ struct emitter;
 /* ---- emit_regions.c, emit_ladder.c: their tables, a step ---- */
 
 void emit_regions(const struct emitter *e);                       /* tables of a piecewise-linear model */
+int varies_params(const struct emitter *e);                       /* beside regions: NAME_vary_params is there */
 void emit_retuned_numbers(const struct emitter *e);               /* NAME_coeffs, where it is these tables */
 int rungs_of_all(const struct emitter *e);
 void emit_region_members(const struct emitter *e);

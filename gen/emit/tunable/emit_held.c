@@ -5,6 +5,7 @@
 #include "emit/regions/regions.h"
 #include "model/reads.h"
 #include "step/exponential/normal.h"
+#include "step/regions/regions.h"
 #include "step/tunable/tuned.h"
 
 static const struct tuning *held(const struct emitter *e)
@@ -133,8 +134,35 @@ static void emit_frequencies(const struct emitter *e)
 	close_function(e, "");
 }
 
+/* Beside regions: what of the params varies with what each derivative is by */
+static void emit_varied_params(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	const int given = held(e)->given, derived = e->model->spec->tuned.derived;
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, derived, e->model->params.derived);
+	struct tape *t = formulas_tape(f);
+	bool *reads = ARRAY(bool, (size_t)held_values(e->model) + 1);
+	open_function(e, NULL, "static void $n_vary_params(const double y[], double by[$N_D][%d])", given + derived);
+	for (int p = 0; p < d->columns; p++)
+		for (int k = 0; k < given + derived; k++) {
+			const int by = tunable_of_column(e->step, p);
+			const tape_ref slope = k < given || by < 0
+				? tape_number(t, by == k)
+				: tape_forward(t, formula(f, e->model->params.derived[k - given]), TAPE_PARAM, by, 0);
+			tape_set(t, format("by[%d][%d]", p, k), slope, 15, NULL);
+		}
+	tape_mark(t, TAPE_PARAM, 0, reads);
+	for (int k = 0; k < given; k++)
+		if (reads[k])
+			say(e, "    const double %s = y[%d];\n", param_local(e, k), k);
+	emit_formulas(f, 4);
+	close_function(e, "y");
+}
+
 static void emit_held(const struct emitter *e)
 {
+	if (varies_params(e))
+		emit_varied_params(e);
 	if (e->model->params.retuned)
 		emit_retuned(e);
 	if (held_leads(e))

@@ -23,25 +23,63 @@ static struct guards own_guards(const struct emitter *e)
 	return guards_of(e->step, &pieces);
 }
 
+/* Of derivatives, whose tables follow from params, too */
+static int columns_of(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	return d && d->varied ? d->columns : 0;
+}
+
 /* ---- the equations ---- */
 
 static const struct tuned_equations **list_equations(const struct emitter *e)
 {
-	const struct tuned_equations **list = ARRAY(const struct tuned_equations *, (size_t)e->step->branches + 1);
+	const struct tuned_equations **list = ARRAY(const struct tuned_equations *,
+						    (size_t)(e->step->branches + 1 + columns_of(e)));
 	list[0] = &retuned_of(e)->all;
 	for (int k = 0; k < e->step->branches; k++)
 		list[k + 1] = &retuned_of(e)->system[k];
 	return list;
 }
 
+
+/* Of each column what its entries are the slopes of, in rows that count the entries of all columns */
+static struct tuned_equations *slopes_of_tables(const struct emitter *e, const struct guards *g)
+{
+	const int columns = columns_of(e), blocks = e->step->branches + VARIED_TABLES;
+	const struct variation v = columns ? variation_of(e->step, -1, has_guards(e) ? g : NULL)
+					   : (struct variation){ 0 };
+	struct tuned_equations *by = ARRAY(struct tuned_equations, (size_t)columns + 1);
+	for (int p = 0; p < columns; p++) {
+		by[p].rows = v.entries;
+		by[p].columns = 1;
+		for (int i = v.first[p * blocks]; i < v.first[(p + 1) * blocks]; i++)
+			if (v.entry[i].made.number >= 0)
+				*MORE(by[p].entry, by[p].entries) = (struct tuned_entry){ i, 0, v.entry[i].made, 0 };
+	}
+	return by;
+}
+
+static void emit_columns(const struct emitter *e, const struct equations_text *text)
+{
+	const int columns = columns_of(e);
+	say(e, "static const pl_entries $n_varied_number[%d] = {\n", columns);
+	for (int p = 0; p < columns; p++)
+		say(e, "    %s,\n", text[p].entries);
+	say(e, "};\n");
+}
+
 /* Of the numbers, then of each system, all by the same formulas; how many these are */
-static int emit_numbers(const struct emitter *e)
+static int emit_numbers(const struct emitter *e, const struct guards *g)
 {
 	const struct tuning *r = retuned_of(e);
-	const int systems = e->step->branches;
+	const int systems = e->step->branches, columns = columns_of(e), count = systems + 1 + columns;
 	SCRATCH const struct tuned_equations **list = list_equations(e);
-	struct equations_text *text = ARRAY(struct equations_text, (size_t)systems + 1);
-	emit_equations(e, r, true, systems + 1, list, text);
+	struct tuned_equations *slopes = slopes_of_tables(e, g);
+	for (int p = 0; p < columns; p++)
+		list[systems + 1 + p] = &slopes[p];
+	struct equations_text *text = ARRAY(struct equations_text, (size_t)count);
+	emit_equations(e, r, true, count, list, text);
 	say(e, "\nstatic const pl_formulas $n_formulas = %s;\n", text[0].formulas);
 	if (r->all.rows)
 		say(e, "static const pl_entries $n_numbers = %s;\n", text[0].entries);
@@ -49,6 +87,8 @@ static int emit_numbers(const struct emitter *e)
 	for (int k = 1; k <= systems; k++)
 		say(e, "    %s,\n", text[k].entries);
 	say(e, "};\n");
+	if (columns)
+		emit_columns(e, text + systems + 1);
 	return operations_behind(r, systems + 1, list);
 }
 
@@ -203,7 +243,7 @@ void emit_retuned(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
-	const int operations = emit_numbers(e), taken = emit_from(e, &g);
+	const int operations = emit_numbers(e, &g), taken = emit_from(e, &g);
 	if (has_guards(e))
 		emit_integers(e, "short", "guard_branch", g.rows, g.branch);
 	if (s->segments > 1)
@@ -219,7 +259,7 @@ void emit_retuned(const struct emitter *e)
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
-		   { "BOUNDED", bounded },
+		   { "BOUNDED", bounded }, { "COLUMNS_D", columns_of(e) },
 		   { "EVENT_FREE", e->step->regions.event_check.is_made });
 	if (e->step->regions.event_check.is_made)
 		emit_gathering(e);

@@ -84,7 +84,13 @@ struct varied_model {               /* a column: the model at two values of its 
 	const struct model *more, *less; /* themselves, where it is by no param */
 	mpq_t apart;                /* by so much the params are */
 };
-struct varied_entry { int row, column; double value; };
+struct varied_entry {
+	int row, column;
+	double value;
+	struct traced_part made;    /* where the target makes it anew: the number of the record that it is the slope of */
+};
+/* Blocks of a column: A of each matrix, switching functions, breakpoints, guards, assignments, times of changes */
+enum { VARIED_TABLES = 5 };
 struct variation {                  /* as pl_variation has it: of all columns the blocks in turn */
 	int blocks, *first;
 	int entries;
@@ -97,6 +103,8 @@ double varied_number(const struct varied_model *v, mpq_srcptr more, mpq_srcptr l
 /* of outputs, rows over x of this layout: per column and segment of time a block */
 struct variation variation_of_outputs(const struct step *step, const struct layout *x);
 void vary_start(const struct step *step, int column, double *value); /* of its initial state */
+/* Where tables are an instance's own: the tunable param that a column is by; NONE: none */
+int tunable_of_column(const struct step *step, int column);
 /* of the tables of a step, or of one of its parts; g NULL: it has no guards */
 struct variation variation_of(const struct step *step, int part, const struct guards *g);
 

@@ -67,13 +67,31 @@ static bool same_model(const struct model *a, const struct model *b)
 	       (!a->switching || same_regions(a->switching, b->switching));
 }
 
+/* Where the target makes tables anew, it has no other values of params that are not tunable: of these what is about
+ * loads may vary, and initial values. */
+static void check_loads_alone(const struct varied_model *v, const struct sensitivity *by, const struct layout *x)
+{
+	const struct listing more = list_rows(v->more, x, v->more->system.segments),
+			     less = list_rows(v->less, x, v->less->system.segments);
+	bool same = more.rows == less.rows;
+	for (int i = 0; i < more.rows && same; i++)
+		for (int j = 0; j < x->size && same; j++)
+			same = (more.row[i].kind == RETUNED_SYSTEM && more.row[i].index >= v->more->system.states) ||
+			       mpq_equal(more.entry[i * x->size + j], less.entry[i * x->size + j]);
+	if (!same)
+		error(by->at, format("tunable %s", by->name), "beside tunable params a sensitivity of regions is by "
+		      "tunable ones: '%s' stands in numbers that the target makes anew", by->name);
+}
+
 static struct varied_model vary(const struct model *model, const struct sensitivity *by)
 {
 	struct varied_model v = { .more = model, .less = model };
 	RATIONAL apart = ZERO, value = ZERO;
 	mpq_init(v.apart);
-	if (by->symbol->kind != SYMBOL_PARAM)
+	if (by->symbol->kind != SYMBOL_PARAM || by->symbol->tuning.number)
 		return v;
+	if (by->symbol->tuning.tuned)
+		error(by->at, NULL, "'%s' is made of tunable params: a sensitivity is by these", by->name);
 	param_value(by->symbol, value);
 	mpq_abs(apart, value);
 	if (mpq_sgn(apart) == 0)
@@ -83,8 +101,8 @@ static struct varied_model vary(const struct model *model, const struct sensitiv
 		mpq_t *there = rationals(1);
 		(side ? mpq_sub : mpq_add)(*there, value, apart);
 		const struct model *found = model_at(model, by->symbol->name, *there);
-		if (!same_model(model, found))
-			continue;
+		if (!same_model(!model->params.retuned ? model : side ? v.more : found, found))
+			continue;                   /* equal systems of what is retuned are one, here alone */
 		*(side ? &v.less : &v.more) = found;
 		mpq_add(v.apart, v.apart, apart);
 	}
@@ -93,6 +111,8 @@ static struct varied_model vary(const struct model *model, const struct sensitiv
 		      "regions, other events or other loads", by->name);
 	if (!mpq_equal(v.more->h, v.less->h))
 		error(by->at, "--step gives the step another way", "the step follows from '%s'", by->name);
+	if (model->params.retuned)
+		check_loads_alone(&v, by, &model->params.retuned->x);
 	return v;
 }
 
@@ -136,6 +156,12 @@ double varied_number(const struct varied_model *v, mpq_srcptr more, mpq_srcptr l
 
 /* ---- a part's tables ---- */
 
+int tunable_of_column(const struct step *step, int column)
+{
+	const struct symbol *by = step->shown->derivatives->column[column].symbol;
+	return by->kind == SYMBOL_PARAM ? by->tuning.number - 1 : NONE;
+}
+
 static const struct model *part_of(const struct model *model, int part)
 {
 	return part < 0 ? model : model->switching->part[part].model;
@@ -150,12 +176,14 @@ struct reader {                     /* of one column the rows there and there */
 	const struct varied_model *v;
 	struct listing more, less;
 	struct variation *to;
+	const struct tuning *retuned;
+	struct rates *rates;        /* where it is by a tunable param */
 };
 
 static void add_entry(struct variation *to, int row, int column, double value)
 {
 	if (value != 0)
-		*MORE(to->entry, to->entries) = (struct varied_entry){ row, column, value };
+		*MORE(to->entry, to->entries) = (struct varied_entry){ row, column, value, { .number = NONE } };
 }
 
 static int place_of(const struct listing *l, enum retuned_kind kind, int of, int index)
@@ -166,9 +194,126 @@ static int place_of(const struct listing *l, enum retuned_kind kind, int of, int
 	abandon();
 }
 
+/* ---- that the target makes anew: the slopes of the numbers of a record ---- */
+
+struct rates { mpq_t value, slope; bool varies; };
+
+static void rate_part(const struct rates *all, const struct traced_part *part, struct rates *to)
+{
+	mpq_init(to->value);
+	mpq_init(to->slope);
+	to->varies = part->number >= 0 && all[part->number].varies;
+	mpq_set(to->value, part->number >= 0 ? all[part->number].value : part->constant);
+	if (part->number >= 0)
+		mpq_set(to->slope, all[part->number].slope);
+	if (part->negative) {
+		mpq_neg(to->value, to->value);
+		mpq_neg(to->slope, to->slope);
+	}
+}
+
+static void operate(enum traced_op op, const struct rates *a, const struct rates *b, struct rates *to)
+{
+	RATIONAL other = ZERO;
+	if (op == TRACED_SUM) {
+		mpq_add(to->value, a->value, b->value);
+		mpq_add(to->slope, a->slope, b->slope);
+		return;
+	}
+	if (op == TRACED_PRODUCT) {
+		mpq_mul(to->value, a->value, b->value);
+		mpq_mul(to->slope, a->slope, b->value);
+		mpq_mul(other, a->value, b->slope);
+		mpq_add(to->slope, to->slope, other);
+		return;
+	}
+	if (mpq_sgn(b->value) == 0)
+		abandon();
+	mpq_div(to->value, a->value, b->value);
+	mpq_mul(other, to->value, b->slope);
+	mpq_sub(to->slope, a->slope, other);
+	mpq_div(to->slope, to->slope, b->value);
+}
+
+/* What is given: a param, or what follows from some */
+static void rate_given(const struct step *step, int column, const struct traced *n, struct rates *to)
+{
+	const struct tuning *t = step->model->params.retuned;
+	const struct derivatives *d = step->shown->derivatives;
+	struct symbol *symbol = t->param[n->a.number].symbol;
+	mpq_set(to->value, t->nominal[n->a.number]);
+	to->varies = n->a.number == tunable_of_column(step, column);
+	mpq_set_si(to->slope, to->varies, 1);
+	if (symbol->tuning.derived) {
+		struct collector collector = { .scheme = "exact" };
+		struct node *slope = slope_by_param(step->model->spec, &d->column[column], symbol->value);
+		to->varies = !is_zero_node(slope);
+		collect_constant(&collector, slope, to->slope);
+	}
+	if (n->a.negative) {
+		mpq_neg(to->value, to->value);
+		mpq_neg(to->slope, to->slope);
+	}
+}
+
+/* At the spec's values, by a tunable param */
+static struct rates *rates_by(const struct step *step, int column)
+{
+	const struct tuning *t = step->model->params.retuned;
+	struct rates *all = ARRAY(struct rates, (size_t)t->numbers + 1);
+	for (int i = 0; i < t->numbers; i++) {
+		const struct traced *n = &t->number[i];
+		mpq_init(all[i].value);
+		mpq_init(all[i].slope);
+		if (n->op == TRACED_GIVEN) {
+			rate_given(step, column, n, &all[i]);
+			continue;
+		}
+		struct rates a = { .varies = false }, b = a;
+		rate_part(all, &n->a, &a);
+		rate_part(all, &n->b, &b);
+		all[i].varies = a.varies || b.varies;
+		operate(n->op, &a, &b, &all[i]);
+	}
+	return all;
+}
+
+static void add_made(struct reader *r, const struct tuned_entry *entry, int row, int column, double sign)
+{
+	const struct traced_part *made = &entry->value;
+	if (made->number < 0 || !r->rates[made->number].varies)
+		return;
+	const bool negative = made->negative != (sign < 0);
+	const double slope = round_rational(r->rates[made->number].slope);
+	*MORE(r->to->entry, r->to->entries) = (struct varied_entry){ row, column, negative ? -slope : slope,
+								     { made->number, negative, NULL } };
+}
+
+/* column: NONE: as it is */
+static void add_retuned(struct reader *r, int row, enum retuned_kind kind, int of, int index, int column, double sign)
+{
+	const struct tuned_equations *from = kind == RETUNED_SYSTEM ? &r->retuned->system[of] : &r->retuned->all;
+	const int place = kind == RETUNED_SYSTEM ? index : retuned_place(r->retuned, kind, of, index);
+	for (int i = 0; i < from->entries && r->rates; i++)
+		if (from->entry[i].row == place)
+			add_made(r, &from->entry[i], row, column < 0 ? from->entry[i].column : column, sign);
+	if (r->rates || kind != RETUNED_SYSTEM || index < r->v->more->system.states)
+		return;
+	/* Loads are the same in all systems of a segment of time. */
+	const int size = r->more.x->size, at = place_of(&r->more, kind, 0, index) * size;
+	for (int j = 0; j < size; j++)
+		add_entry(r->to, row, j, varied_number(r->v, r->more.entry[at + j], r->less.entry[at + j]));
+}
+
+/* ---- rows ---- */
+
 /* sign: 1 or -1 of the row as it is listed */
 static void add_row_of(struct reader *r, int row, enum retuned_kind kind, int of, int index, double sign)
 {
+	if (r->retuned) {
+		add_retuned(r, row, kind, of, index, NONE, sign);
+		return;
+	}
 	const int size = r->more.x->size, from = place_of(&r->more, kind, of, index) * size;
 	for (int j = 0; j < size; j++)
 		add_entry(r->to, row, j,
@@ -177,6 +322,10 @@ static void add_row_of(struct reader *r, int row, enum retuned_kind kind, int of
 
 static void add_break(struct reader *r, int row, int function, int breakpoint, double sign)
 {
+	if (r->retuned) {
+		add_retuned(r, row, RETUNED_BREAK, function, breakpoint, r->more.x->size, sign);
+		return;
+	}
 	const int size = r->more.x->size, from = place_of(&r->more, RETUNED_BREAK, function, breakpoint) * size;
 	add_entry(r->to, row, size, sign * varied_number(r->v, r->more.entry[from], r->less.entry[from]));
 }
@@ -257,13 +406,13 @@ static double *steps_of(const struct step *step, int part)
 	const struct derivatives *d = step->shown->derivatives;
 	const int cells = step->layout.size * step->layout.size;
 	const struct listing own = listing_of(step, step->model);
-	if (d->columns * step->branches > LIMIT_TUNED_NUMBERS / cells)
+	if (d->columns * step->branches > LIMIT_TUNED_NUMBERS / cells || step->model->params.retuned)
 		return NULL;
 	double *over = ARRAY(double, (size_t)(d->columns * step->branches * cells)), *to = over;
 	for (int p = 0; p < d->columns; p++) {
 		const struct varied_model *v = &d->varied[p];
 		struct reader r = { v, listing_of(step, part_of(v->more, part)),
-				    listing_of(step, part_of(v->less, part)), NULL };
+				    listing_of(step, part_of(v->less, part)), .to = NULL };
 		for (int k = 0; k < step->branches; k++, to += cells)
 			if (!add_step(&r, &own, k, to))
 				return NULL;
@@ -279,7 +428,10 @@ struct variation variation_of(const struct step *step, int part, const struct gu
 	for (int p = 0; p < d->columns; p++) {
 		const struct varied_model *v = &d->varied[p];
 		struct reader r = { v, listing_of(step, part_of(v->more, part)),
-				    listing_of(step, part_of(v->less, part)), &to };
+				    listing_of(step, part_of(v->less, part)), &to, step->model->params.retuned,
+				    NULL };
+		if (r.retuned && tunable_of_column(step, p) >= 0)
+			r.rates = rates_by(step, p);
 		for (int k = 0; k < step->branches; k++) {
 			for (int i = 0; i < step->layout.size; i++)
 				add_row_of(&r, i, RETUNED_SYSTEM, k, i, 1);
