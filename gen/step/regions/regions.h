@@ -87,7 +87,7 @@ struct varied_model {               /* a column: the model at two values of its 
 struct varied_entry {
 	int row, column;
 	double value;
-	struct traced_part made;    /* where the target makes it anew: the number of the record that it is the slope of */
+	struct traced_part made;    /* where the target makes it anew: the number of the record whose slope it is */
 };
 /* Blocks of a column: A of each matrix, switching functions, breakpoints, guards, assignments, times of changes */
 enum { VARIED_TABLES = 5 };
