@@ -99,11 +99,12 @@ static double most_halvings(const struct step *step)
 /* With a tolerance: how long the series of each internal step is, and the next, where nothing is known of it yet */
 static void count_tolerance(const struct step *step, double steps, double events, double part[WORST_SERIES])
 {
-	enum { LONG = 31 };             /* halvings of one that nothing is known of, PL_LEAST_PART */
+	/* Halvings of one that nothing is known of, PL_LEAST_PART; what a look at a function takes beside its terms */
+	enum { LONG = 31, LOOK = 7 };
 	const struct expansion *x = step->taylor.expansion;
 	const double states = step->branch->system.states, halvings = steps * most_halvings(step);
 	const double fresh = 1 + events + fmin(step->model->truncation.substeps, LONG * (1 + events));
-	const double shown = step->taylor.unresolved ? halvings * x->unresolved_functions * x->order : 0;
+	const double shown = step->taylor.unresolved ? halvings * x->unresolved_functions * (x->order + LOOK) : 0;
 	part[WORST_MEASURED] = (steps + 1) * (states + x->measured);
 	part[WORST_HALVED] = halvings;
 	part[WORST_SHOWN] = shown;
