@@ -3,6 +3,32 @@
 # Sourced before tap.sh by tests that ask compilers about what plgen emits, most of them only with LONG=1 in the
 # environment (`make check-long`); `make check` asks for warnings in tests/warnings.
 
+warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
+
+# languages [OPTIONS [OPTIONS]]: a line each, the compilers of GCCS and CLANGS as C and as C++ with options of each
+languages() {
+	for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
+		echo "${pair% *} -std=c99 ${1-}"
+		echo "${pair#* } -std=c++17 -x c++ ${2-}"
+	done
+}
+
+# by_each NAME ARGUMENT ...: with LONG=1 a result for each line of `compilers`, that it says nothing
+by_each() {
+	long || return 0
+	what=$1
+	shift
+	while read -r compiler options; do
+		if ! command -v "$compiler" >/dev/null 2>&1; then
+			skip "$what, $compiler" "$compiler is not installed"
+			continue
+		fi
+		# shellcheck disable=SC2086
+		"$compiler" $warnings -I"$root/runtime" $options "$@" >log 2>&1
+		result $? "$what, $compiler: not a warning"
+	done <compilers
+}
+
 # list_compilers: a line each, with options, of which by_turns chooses
 list_compilers() {
 	echo 'gcc -std=c99 -O1 -c -o object.o'

@@ -445,28 +445,16 @@ static void run_reduction(void *seed)
 int main(int argc, char **argv)
 {
     unsigned long random_count = 200, reduced_count = 100, every = 1, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:r:e:s:qv")) != -1;) {
-        if (option == 'n')
-            random_count = strtoul(optarg, NULL, 10);
-        else if (option == 'r')
-            reduced_count = strtoul(optarg, NULL, 10);
-        else if (option == 'e')
-            every = strtoul(optarg, NULL, 10);
-        else if (option == 's')
-            seed = strtoul(optarg, NULL, 10);
-        else if (option == 'q')
-            quick = true;
-        else if (option == 'v')
-            verbose = true;
-        else
-            return 2;
-    }
+    memory_open();
+    take_options(argc, argv, (struct command_option[]){
+        { 'n', &random_count }, { 'r', &reduced_count }, { 'e', &every }, { 's', &seed }, { 'q', .on = &quick },
+        { 'v', .on = &verbose }, { 0 }
+    });
     if (optind == argc) {
         fputs("usage: bitwise [-n RANDOM] [-r REDUCED] [-e EVERY] [-s SEED] [-q] [-v] exponentials.txt "
               "MODEL.spec ...\n", stderr);
         return 2;
     }
-    memory_open();
     size_t matrices;
     struct matrix_case *matrix = read_matrices(argv[optind++], &matrices);
     printf("1..%zu\n", matrices + (size_t)(argc - optind) + (bitwise_spec_count + every - 1) / every + random_count +

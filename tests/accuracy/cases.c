@@ -64,6 +64,24 @@ void show_spec(const char *text)
 	}
 }
 
+void take_options(int argc, char **argv, const struct command_option *options)
+{
+	const struct command_option *o;
+	const char *letters = "";
+	for (o = options; o->letter; o++)
+		letters = format(o->number ? "%s%c:" : "%s%c", letters, o->letter);
+	for (int letter; (letter = getopt(argc, argv, letters)) != -1;) {
+		for (o = options; o->letter && o->letter != letter; o++)
+			;
+		if (!o->letter)
+			exit(2);
+		if (o->number)
+			*o->number = strtoul(optarg, NULL, 10);
+		else
+			*o->on = true;
+	}
+}
+
 /* ---- cases ---- */
 
 static int reported, failures;

@@ -20,4 +20,9 @@ void report_case(const char *name, bool good);              /* of one that neede
 int cases_reported(void);
 int cases_failed(void);
 
+/* Before other arguments, which stand from optind on: numbers and switches; letter 0: the end. What is none of them
+ * ends the program. */
+struct command_option { char letter; unsigned long *number; bool *on; };
+void take_options(int argc, char **argv, const struct command_option *options);
+
 #endif

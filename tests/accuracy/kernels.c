@@ -504,23 +504,11 @@ static void run(const char *name, const char *path, const char *text)
 int main(int argc, char **argv)
 {
     unsigned long random_count = 80, large_count = 5, every = 1, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:l:e:s:wv")) != -1;) {
-        if (option == 'n')
-            random_count = strtoul(optarg, NULL, 10);
-        else if (option == 'l')
-            large_count = strtoul(optarg, NULL, 10);
-        else if (option == 'e')
-            every = strtoul(optarg, NULL, 10);
-        else if (option == 's')
-            seed = strtoul(optarg, NULL, 10);
-        else if (option == 'w')
-            whole = true;
-        else if (option == 'v')
-            verbose = true;
-        else
-            return 2;
-    }
     memory_open();
+    take_options(argc, argv, (struct command_option[]){
+        { 'n', &random_count }, { 'l', &large_count }, { 'e', &every }, { 's', &seed }, { 'w', .on = &whole },
+        { 'v', .on = &verbose }, { 0 }
+    });
     printf("1..%lu\n", (unsigned long)(argc - optind) + (spec_count + every - 1) / every + random_count + large_count);
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), argv[i], read_text(argv[i]));

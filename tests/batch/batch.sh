@@ -7,15 +7,10 @@
 #
 # MERGE=1: of all of these models. LONG=1: of more, as vectors of what this machine has too, and by clang; there
 # products may be contracted. Else code that another test compiles with an optimiser has none: its bits are the same.
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
+root=$2
+. "${0%/*}/../plgen.sh"
 here=$root/tests/batch
 specs=$root
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-. "$root/tests/cases.sh"
-runtime_archive "$root/runtime"
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Werror'
 level=-O0
 [ -z "${LONG:-}" ] || level=-O1
@@ -143,7 +138,6 @@ cat >hand.c <<'END'
 #include "plrt.h"
 
 #define PL(name) m_##name
-#define PL_SINGLE 0
 #include "lanes.h"
 
 #include <math.h>
@@ -164,9 +158,7 @@ static int m_status(const m *s) { return pl_not_finite(s->y, 2); }
 
 #define PL(name) m_##name
 #define PL_TYPE m
-#define PL_SINGLE 0
 #define PL_STATES 2
-#define PL_INPUTS 0
 #define PL_OUTPUTS 2
 #define PL_SIZE 2
 #define PL_PEAKS 1
@@ -174,7 +166,6 @@ static int m_status(const m *s) { return pl_not_finite(s->y, 2); }
 #define PL_SLOPE m_slope
 #define PL_BEND m_bend
 #define PL_PEAK_ROW(c, p) m_row[p]
-#define PL_OWN 0
 #include "peaks.h"
 
 static void m_begin_step(const m *s, const double *u, double x[2]) { m_get(s, x); (void)u; }
@@ -213,9 +204,7 @@ PL_LANES_INLINE void m_lanes_bend(const pl_lanes *state, const pl_lanes *factor,
 #define PL(name) m_##name
 #define PL_TYPE m
 #define PL_INSTANCES m_instances
-#define PL_SINGLE 0
 #define PL_STATES 2
-#define PL_INPUTS 0
 #define PL_OUTPUTS 2
 #define PL_ROWS 2
 #define PL_STEPPED 2
@@ -225,9 +214,7 @@ PL_LANES_INLINE void m_lanes_bend(const pl_lanes *state, const pl_lanes *factor,
 #define PL_LANES 0
 #define PL_PEAKS 1
 #define PL_SIZE 2
-#define PL_MOMENTA 0
 #define PL_NOMINAL m_bend
-#define PL_SAMPLED 0
 #include "batch.h"
 
 static double worst;

@@ -5,11 +5,8 @@
 # --solution has the same rows, and both balls at rest in the end. What sticks and lies is still in steps that are cut.
 #
 #     dropped.sh PLGEN SOURCE_ROOT
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-runtime_archive "$root/runtime"
+root=$2
+. "${0%/*}/../plgen.sh"
 for mass in 0.3 0.5 1 2 3 5; do
 	for e in 0 0.1 0.2 0.5 0.8; do
 		cat >balls.spec <<-END

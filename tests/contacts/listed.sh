@@ -6,31 +6,18 @@
 # units in the last place.
 #
 #     listed.sh PLGEN SOURCE_ROOT
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-. "$root/tests/cases.sh"
-runtime_archive "$root/runtime"
+root=$2
+. "${0%/*}/../plgen.sh"
 
 # compared NAME SPEC: in double and in float
 compared() {
 	for real in double float; do
-		value=
-		"$plgen" --selftest --prefix subject --real $real "$2" -o subject.c 2>log &&
-			$run_cc -I. -I"$root/runtime" -o program main.c subject.c "$archive" -lm >>log 2>&1 &&
-			value=$(./program)
+		value=$(selftest_of "$2" $real)
 		echo "returns $value, expected below 200" >>log
 		awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 == v && v < 200) }'
 		result $? "$1, in $real"
 	done
 }
-
-cat >main.c <<-END
-	#include "subject.h"
-	#include <stdio.h>
-	int main(void) { printf("%g\n", (double)subject_selftest()); }
-END
 
 # dropped MASS E GROUND [HEIGHT STEP]: the mass below, restitutions
 dropped() {

@@ -5,13 +5,10 @@
 # second. Errors (orders.c) of some 16 steps, h to 2.5 h, tell the order (orders.awk); one run before tells at which h
 # they come down to what is still well above rounding. From 24 starts, with MERGE=1 or LONG=1 in the environment 48.
 # TABLE=1: a row for doc/accuracy.md. $CC compiles, $PLRT is the runtime.
-plgen=$(realpath "$1")
-source=$(realpath "$2")
+root=$2
 first=${3:-0}
 every=${4:-1}
-. "$source/tests/run_cc.sh"
-. "$source/tests/tap.sh"
-runtime_archive "$source/runtime"
+. "${0%/*}/../plgen.sh"
 starts=
 merging || starts=-DSTARTS=24
 seconds=6
@@ -56,7 +53,7 @@ errors() {
 		$(cat rows)
 		};
 	END
-	$run_cc $starts -I. -I"$source/runtime" -o errors "$source/tests/contacts/orders.c" "$archive" -lm \
+	$run_cc $starts -I. -I"$root/runtime" -o errors "$root/tests/contacts/orders.c" "$archive" -lm \
 		>>log 2>&1 || return 1
 	./errors
 }
@@ -81,7 +78,7 @@ order() {
 	row="| \`$1\` | $(awk 'NR == 1 { print $4 }' once)"
 	for p in 4 6 8; do
 		grep "^$p " found >log
-		awk -v p="$p" -f "$source/tests/contacts/orders.awk" log >slope
+		awk -v p="$p" -f "$root/tests/contacts/orders.awk" log >slope
 		read -r slope good <slope
 		[ "$good" = yes ]
 		result $? "$1: order $p, measured $slope"
@@ -91,7 +88,7 @@ order() {
 }
 
 at=$((every - first))
-awk -f "$source/tests/cases.awk" "$source/tests/contacts/orders.cases" >names
+awk -f "$root/tests/cases.awk" "$root/tests/contacts/orders.cases" >names
 for name in $(cat names); do
 	spec=$name.spec
 	[ $((at % every)) -ne 0 ] || ! chosen "$name" || order "$name"

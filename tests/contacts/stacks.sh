@@ -8,16 +8,13 @@
 # float_curved; radau, float_radau (likewise by collocation); etdrk4, float_etdrk4 (without that spring); solution:
 # --solution beside the step, to 1e-8; solved: the same, where it is not refused.
 # $PLRT is the runtime. KEEP=FOLDER keeps what fails.
-plgen=$(realpath "$1")
 stacks=$(realpath "$2")
 stands=$(realpath "$3")
-source=$(realpath "$4")
+root=$4
 firsts=$5
 many=$6
+. "${0%/*}/../plgen.sh"
 shift 6
-. "$source/tests/run_cc.sh"
-. "$source/tests/tap.sh"
-runtime_archive "$source/runtime"
 
 # follows: 2: it is refused
 follows() {
@@ -25,7 +22,7 @@ follows() {
 		grep -q 'it is not known' log && return 2
 		return 1
 	fi
-	$run_cc -I. -I"$source/runtime" -DMODEL=scene -o rows "$source/runtime/host/plmain.c" scene.c $archive -lm \
+	$run_cc -I. -I"$root/runtime" -DMODEL=scene -o rows "$root/runtime/host/plmain.c" scene.c $archive -lm \
 		>>log 2>&1 && ./rows 1 >rows.csv 2>>log || return 1
 	grep -v '^#' solution.csv | paste -d, rows.csv - | awk -F, 'NR > 1 { for (i = 2; i <= NF / 2; i++) {
 				off = $i - $(i + NF / 2); off = off < 0 ? -off : off
@@ -62,7 +59,7 @@ stands_up() {
 	case $1 in
 		solution | solved) follows; return ;;
 	esac
-	$run_cc $([ $real = float ] && echo -DFLOAT) -I. -I"$source/runtime" -o stands "$stands" scene.c \
+	$run_cc $([ $real = float ] && echo -DFLOAT) -I. -I"$root/runtime" -o stands "$stands" scene.c \
 		$archive -lm >>log 2>&1 || return 1
 	./stands $digits 2 >>log 2>&1
 }

@@ -7,15 +7,11 @@
 #
 # Compiled to be run, and with MERGE=1 for warnings: by gcc and clang as C99, g++ and clang++ as C++17, all four for the
 # first model, for the others one of them in turn, with LONG=1 all; what is not installed is skipped.
-set -u
-plgen=$(realpath "$1")
 root=$2
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
-. "${0%/*}/../tap.sh"
-. "${0%/*}/../cases.sh"
-. "$root/tests/run_cc.sh"
+. "${0%/*}/../compilers.sh"
+. "${0%/*}/../plgen.sh"
+warnings="$warnings -Wcast-qual"
 ! long || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
-runtime_archive "$root/runtime"
 
 cat >compilers <<'EOT'
 gcc -std=c99

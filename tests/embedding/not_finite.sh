@@ -6,13 +6,8 @@
 # forever.
 #
 #     not_finite.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 cat >look.c <<'EOF'
 #include "plrt.h"

@@ -4,13 +4,8 @@
 # on; in each kind of step, by NAME_step and by NAME_run.
 #
 #     ranges.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-. "$root/tests/run_cc.sh"
-. "${0%/*}/../tap.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 cat >look.c <<'EOF'
 #include "plrt.h"

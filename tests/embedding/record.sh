@@ -5,13 +5,8 @@
 # sample for an input that is held.  And what plmain says.
 #
 #     record.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 plmain=$root/runtime/host/plmain.c
 for real in double float; do
     ${CC:-cc} -std=c99 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror $([ $real = double ] || echo -DFLOAT) \

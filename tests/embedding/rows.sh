@@ -4,13 +4,8 @@
 # library and --raw by the bytes; and that a row which cannot be written ends the run.
 #
 #     rows.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 # Numbers of every size: a decaying mode, a large one, states that are 0
 cat >rows.spec <<'EOF'

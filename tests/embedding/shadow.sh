@@ -9,13 +9,9 @@
 # those of GCCS and CLANGS (default: gcc g++, clang clang++), all four for the first model, for the others gcc's C and
 # clang's C++, with LONG=1 all; what is not installed is skipped.  gcc's C is of every name, any other of every third,
 # each of others, with LONG=1 of all.
-set -u
-plgen=$(realpath "$1")
 root=$2
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
-. "${0%/*}/../tap.sh"
-. "${0%/*}/../cases.sh"
+. "${0%/*}/../plgen.sh"
 
 {
     gccs=${GCCS:-gcc g++}
@@ -90,7 +86,6 @@ shadows 'a remainder of ramps, with nodes' 20 "$root/tests/remainder/ramped.spec
 
 # ---- they do what the model does under another name ----
 
-runtime_archive "$root/runtime"
 # runs NAME: what a model of this name says is NAME.csv
 runs() {
     main_of "$1" -std=c99 2>>log

@@ -4,14 +4,8 @@
 # knows of it.
 #
 #     status.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-. "${0%/*}/../cases.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 cat >look.c <<'EOF'
 #include "linear_pl.h"

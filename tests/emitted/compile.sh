@@ -8,44 +8,18 @@
 # SOLUTIONS is a folder with MODEL_solution.csv, of --solution 30.
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
-set -u
-plgen=$(realpath "$1")
 root=$2
 solutions=$(realpath "$3")
+. "${0%/*}/../compilers.sh"
+. "${0%/*}/../plgen.sh"
 shift 3
 models=$*
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../compilers.sh"
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
 
 installed() {
     command -v "$1" >/dev/null 2>&1
 }
 
-# a line for each compiler and language: its command
-languages() {
-    for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-        echo "${pair% *} -std=c99"
-        echo "${pair#* } -std=c++17 -x c++"
-    done
-}
-
 languages >compilers
-
-# compiles FILE.c NAME: with LONG=1 one result for each compiler and language
-compiles() {
-    long || return 0
-    while read -r compiler options; do
-        if ! installed "$compiler"; then
-            skip "$2, $compiler" "$compiler is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2086
-        $compiler $warnings -I"$root/runtime" -O1 -c -o "${1%.c}.o" $options "$1" >log 2>&1
-        result $? "$2, $compiler $options"
-    done <compilers
-}
 
 # all_compile FILE.c NAME [OPTIONS]: with LONG=1, or `always`, without code, as one result
 all_compile() {
@@ -72,7 +46,6 @@ same_columns() {
     awk -F, -f "$root/tests/emitted/columns.awk" "$2" "$1" >>log 2>&1
 }
 
-runtime_archive "$root/runtime"
 # driver FILE.c NAME PROGRAM [FLAGS [LIBRARIES]]: with MERGE=1 or LONG=1 in the compiler's own dialect, else only to run
 driver() {
     if ! merging; then
@@ -97,7 +70,7 @@ for m in $models; do
     "$plgen" --header "$spec" >"$m/header.h" 2>log && cmp "$m/header.h" "$m/$m.h" >>log 2>&1
     result $? "$m: --header is FILE.h"
     for kind in "$m" "$m.rhs"; do
-        compiles "$kind/stdout.c" "$kind: standard output"
+        by_each "$kind: standard output" -O1 -c -o "$kind/stdout.o" "$kind/stdout.c"
         all_compile "$kind/$m.c" "$kind: -o FILE.c with FILE.h"
         grep -q '^#include "'"$m"'.h"$' "$kind/$m.c" && [ -s "$kind/$m.h" ]
         result $? "$kind: FILE.c includes FILE.h"

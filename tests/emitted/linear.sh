@@ -8,21 +8,14 @@
 # With LONG=1 each file compiles without a warning, as C99 and as C++17 (without, ../warnings asks that).
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
-set -u
 part=$1
 shift
-plgen=$(realpath "$1")
 inputs=$(realpath "$2")
-root=$(realpath "$3")
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
+root=$3
 . "${0%/*}/../compilers.sh"
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
+. "${0%/*}/../plgen.sh"
 
-for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-    echo "${pair% *} -std=c99"
-    echo "${pair#* } -std=c++17 -x c++"
-done >compilers
+languages >compilers
 
 installed() {
     command -v "$1" >/dev/null 2>&1
@@ -61,8 +54,6 @@ only_runtime() {
 same_columns() {
     awk -F, -f "$root/tests/emitted/columns.awk" "$2" "$1" >>log 2>&1
 }
-
-runtime_archive "$root/runtime"
 
 driver() {          # driver FILE NAME PROGRAM [LIBRARIES]: an object, or C, with LONG=1 in the compiler's own dialect
     case $1 in *.c)
@@ -162,7 +153,6 @@ result $? "--reduce leaves 2 of the 4 states of equal masses, seen through their
 }
 
 # ---- names ----
-
 
 # right FILE.spec NAME TITLE: it compiles, and what its driver says is what --solution says
 right() {

@@ -4,13 +4,9 @@
 # closed forms have them, 0 between any two (oscillators.c).
 #
 #     oscillators.sh PLGEN SOURCE_ROOT COUNT
-set -u
-plgen=$(realpath "$1")
-root=$(cd "$2" && pwd) || exit 99
+root=$2
 many=$3
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 awk -v n="$many" 'BEGIN {
     print "model oscillators"

@@ -2,13 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # rows.sh PLGEN SOURCE_ROOT: NAME_run in blocks of rows against NAME_step, for every number of steps from none to three
 # blocks and one: models and forms of the step in double and float, as two programs.
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-. "${0%/*}/../cases.sh"
-runtime_archive "$root/runtime"
+root=$2
+. "${0%/*}/../plgen.sh"
 
 # Loads far above the poles, whose forced part the state is kept without; and over differences
 cat >forced.spec <<'EOF'

@@ -87,7 +87,6 @@ static const real bent_stiffness[1][1] = {{0}};
 #define PL_FUNCTIONS 0
 #define PL_FORCINGS 0
 #define PL_OPERATORS 1
-#define PL_SEGMENTS 1
 #define PL_STEADY 0
 #define PL_AT 1
 #define PL_TERMS 6

@@ -1,17 +1,10 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a step of the model MODEL_model takes: a line SIZE TICKS, sizeof the state and SysTick's ticks over STEPS steps,
  * those of as many calls of an empty function taken off. Under QEMU's -icount, SysTick counts instructions. */
-#include "plrt.h"
 #include "port.h"
+#include "variant.h"
 
-#ifdef REAL_FLOAT
-typedef float real;
-typedef pl_modelf description;
-#else
-typedef double real;
-typedef pl_model description;
-#endif
-extern const description MODEL;
+extern const real_model MODEL;
 
 enum { STEPS = 200, BEFORE = 50, STATE = 4096, INPUTS = 16 };
 #define SYSTICK ((volatile uint32_t *)0xE000E010) /* control, reload, value */

@@ -2,16 +2,9 @@
 /* The longest step of the model MODEL that a search finds, from starts of random signs and sizes at random times: a
  * line of SysTick's ticks, in the mean and at most, and of the bound in the model's header, which is included before.
  * Under QEMU's -icount, SysTick counts instructions. */
-#include "plrt.h"
 #include "port.h"
-#ifdef REAL_FLOAT
-typedef float real;
-typedef pl_modelf description;
-#else
-typedef double real;
-typedef pl_model description;
-#endif
-extern const description MODEL;
+#include "variant.h"
+extern const real_model MODEL;
 
 enum { STARTS = 40, STEPS = 64, STATE = 1024, INPUTS = 16, MOST = 64 };
 #define SYSTICK ((volatile uint32_t *)0xE000E010) /* control, reload, value */

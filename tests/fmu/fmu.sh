@@ -6,14 +6,9 @@
 # 3.0/headers and 3.0/schema; without them what needs them is skipped.
 # LONG=1 in the environment: FMUs are compiled as an importer would, and looked at by both compilers; without it those
 # of `plant` and of floats not optimised, and by gcc and clang by turns, the others only to be run.
-set -u
-plgen=$(realpath "$1")
-root=$(cd "$2" && pwd) || exit 99
-standard=${FMI_DIR:-$root/../shared/fmi}
-standard=$(cd "$standard" 2>/dev/null && pwd)
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-. "$root/tests/cases.sh"
+root=$2
+standard=$(cd "${FMI_DIR:-$root/../shared/fmi}" 2>/dev/null && pwd)
+. "${0%/*}/../plgen.sh"
 own=$root/tests/fmu
 models=$root/models
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wcast-qual -Werror'
@@ -280,7 +275,6 @@ for version in 2 3; do
             -o "drive$version$single" -ldl || exit 99
     done
 done
-runtime_archive "$root/runtime"
 
 # make NAME SPEC VERSION OPTIONS: the FMU NAME.fmu, its object, and the model's own functions as another
 make_both() {

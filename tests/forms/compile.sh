@@ -12,32 +12,17 @@ plgen=$(realpath "$1")
 root=$2
 double=$(realpath "$3")
 float=$(realpath "$4")
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 remainder='pendulum duffing vanderpol beam4'
 switching='gear1 two_masses quarter_car_bumps'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../tap.sh"
 
-{
-    for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-        echo "${pair% *} -std=c99 -O1"
-        echo "${pair#* } -std=c++17 -x c++ -fsyntax-only"
-    done
-} >compilers
+languages -O1 -fsyntax-only >compilers
 
-# compiles FILE.c NAME [OPTIONS]: with LONG=1
+# compiles FILE.c NAME [OPTIONS]
 compiles() {
-    long || return 0
-    while read -r compiler options; do
-        if ! command -v "$compiler" >/dev/null 2>&1; then
-            skip "$2, $compiler" "$compiler is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} $options -c "$1" \
-            -o out.o >log 2>&1
-        result $? "$2, $compiler ${options%% *}"
-    done <compilers
+    # shellcheck disable=SC2086
+    by_each "$2" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o
 }
 
 without_comments() {

@@ -568,19 +568,10 @@ static void run(const char *name, char *text)
 int main(int argc, char **argv)
 {
     unsigned long random_count = 60, undamped_count = 60, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:u:s:v")) != -1;) {
-        if (option == 'n')
-            random_count = strtoul(optarg, NULL, 10);
-        else if (option == 'u')
-            undamped_count = strtoul(optarg, NULL, 10);
-        else if (option == 's')
-            seed = strtoul(optarg, NULL, 10);
-        else if (option == 'v')
-            trial.verbose = true;
-        else
-            return 2;
-    }
     memory_open();
+    take_options(argc, argv, (struct command_option[]){
+        { 'n', &random_count }, { 'u', &undamped_count }, { 's', &seed }, { 'v', .on = &trial.verbose }, { 0 }
+    });
     printf("1..%lu\n", (unsigned long)(argc - optind) + TWICE + random_count + undamped_count);
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), read_text(argv[i]));

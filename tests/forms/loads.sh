@@ -4,15 +4,12 @@
 # ones, and some in which what the step loses to a load is far larger than what the load leaves in a state.
 #
 #     loads.sh PLGEN SOURCE_ROOT LOAD_SPECS [FIRST LAST [SEED]]
-set -u
-plgen=$(realpath "$1")
-root=$(cd "$2" && pwd) || exit 99
+root=$2
 specs=$(realpath "$3")
 first=${4-1}
 last=${5-3}
 seed=${6-1}
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
+. "${0%/*}/../plgen.sh"
 echo '#include <math.h>' >models.c
 cat >table <<'EOF'
 static const struct load_model {
@@ -168,7 +165,6 @@ awk '{ exit !($1 > 0 && $1 < 1e-12 && $2 > 0 && $2 < 1e-3) }' log || {
 	tap_end
 }
 
-runtime_archive "$root/runtime"
 echo '};' >>table
 cat models.c table >load_models.h
 # without a warning: for `make check` ../warnings asks that

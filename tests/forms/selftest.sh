@@ -6,16 +6,10 @@
 #
 # As emitted it is below 60 units in the last place, of stop, which is followed through five crossings, below 100; with
 # the leading digit of one constant wrong it is above 300.
-set -u
-plgen=$(realpath "$1")
-root=$(cd "$2" && pwd) || exit 99
+root=$2
 cases=$(realpath "$3")
 here=$(cd "${0%/*}" && pwd) || exit 99
-. "$here/../run_cc.sh"
-. "$here/../tap.sh"
-. "$here/../cases.sh"
-. "$here/../cases.sh"
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 
 # subjects, then subject FILE ... and values: what the self-test of each file returns, a line each, from one program
 subjects() {

@@ -3,12 +3,9 @@
 # fading.sh PLGEN FADING SOURCE: friction whose forces are formulas of time, which fall to 0 and below one another:
 # beside closed forms from event to event (fading.c), in regions and by series, at steps short and long; and such forces
 # of sliders without mass. $CC compiles, $PLRT is the runtime.
-plgen=$(realpath "$1")
 fading=$(realpath "$2")
-source=$(realpath "$3")
-. "$source/tests/run_cc.sh"
-. "$source/tests/tap.sh"
-runtime_archive "$source/runtime"
+root=$3
+. "${0%/*}/../plgen.sh"
 cat >drive.c <<'END'
 #include "m.h"
 #include <stdio.h>
@@ -30,7 +27,7 @@ run() {
 	shift 4
 	printf 'model m\ncoord x\n%s\ninit x = %s\n' "$equation" "$x" >m.spec
 	"$plgen" "$@" --step "$h" m.spec -o m.c >log 2>&1 &&
-		$run_cc -I. -I"$source/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
+		$run_cc -I. -I"$root/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
 		{ "$fading" $numbers "$x" "$steps" "$h"; ./drive "$steps"; } >both &&
 		awk -v most="$tolerance" 'NR == 1 { x = $1; v = $2 }
 			NR == 2 { good = ($1 - x)^2 + ($2 - v)^2 <= most^2 && $3 == 0 }
@@ -79,7 +76,7 @@ slider() {
 			printf "%.12g %.12g\n", x, z }' >truth
 	for h in 0.01 0.1; do
 		"$plgen" --step $h m.spec -o m.c >log 2>&1 &&
-			$run_cc -I. -I"$source/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
+			$run_cc -I. -I"$root/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
 			./drive "$(echo $h | awk '{ print 1/$1 }')" >found &&
 			cat truth found >>log && paste -d' ' truth found |
 			awk '{ exit !(($1 - $3)^2 + ($2 - $4)^2 <= 1e-16 && $5 == 0) }'

@@ -3,29 +3,13 @@
 # joint_through.sh PLGEN SPECS TRUTH COMPARE.AWK SOURCE FIRST COUNT: random joints with sliders without mass from seed
 # FIRST on: every event and the end of --solution beside the same joint in long double; and NAME_selftest, in double and
 # in float, small. $CC compiles, $PLRT is the runtime.
-plgen=$(realpath "$1")
 specs=$(realpath "$2")
 truth=$(realpath "$3")
 compare=$(realpath "$4")
-source=$(realpath "$5")
+root=$5
 first=$6
 many=$7
-. "$source/tests/run_cc.sh"
-. "$source/tests/tap.sh"
-runtime_archive "$source/runtime"
-
-# tested REAL: what NAME_selftest returns; "none": it is refused by name
-tested() {
-	if ! "$plgen" --real "$1" --prefix joint --selftest joint.spec -o joint.c 2>log; then
-		grep -q 'finds no start\|the step has' log && echo none
-		return
-	fi
-	{
-		printf '#include "joint.h"\n#include <stdio.h>\n'
-		printf 'int main(void) { printf("%%g\\n", (double)joint_selftest()); }\n'
-	} >main.c
-	$run_cc -I. -I"$source/runtime" -o tested main.c joint.c "$archive" -lm >log 2>&1 && ./tested
-}
+. "${0%/*}/../plgen.sh"
 
 told=0
 for seed in $(seeds "$first" "$many"); do
@@ -41,7 +25,7 @@ for seed in $(seeds "$first" "$many"); do
 		fi
 		result $? "$name: events and end"
 		for real in double float; do
-			value=$(tested $real)
+			value=$(selftest_of joint.spec $real)
 			echo "# NAME_selftest in $real: $value" >log
 			[ "$value" = none ] || awk -v v="$value" 'BEGIN { exit !(v != "" && v + 0 == v && v < 1000) }'
 			result $? "$name: selftest in $real"

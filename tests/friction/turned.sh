@@ -5,11 +5,8 @@
 # it is the second, in a closed form: by steps of regions and by series.  Two that hold more than they bear, by both.
 #
 #     turned.sh PLGEN SOURCE_ROOT
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-runtime_archive "$root/runtime"
+root=$2
+. "${0%/*}/../plgen.sh"
 
 # beside the closed form: rows of t, x, y; the largest difference
 judge() {

@@ -4,13 +4,9 @@
 # record as far ahead; and where such an input cannot be.
 #
 #     holds.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
+root=$2
+. "${0%/*}/../plgen.sh"
 here=$root/tests/holds
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-runtime_archive "$root/runtime"
 
 # follows SPEC FLAGS
 follows() {

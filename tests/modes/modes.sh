@@ -3,14 +3,10 @@
 # Models of some modes: against sums over modes in closed form (closed.c), and against the whole model (whole.c).
 #
 #     modes.sh PLGEN SOURCE_ROOT DROPPED
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
+root=$2
 dropped=$(realpath "$3")
+. "${0%/*}/../plgen.sh"
 here=$root/tests/modes
-. "$root/tests/tap.sh"
-. "$root/tests/run_cc.sh"
-runtime_archive "$root/runtime"
 cp "$here"/*.spec "$here"/*.mtx .
 cp -r "$root/models/beam" .
 

@@ -3,13 +3,9 @@
 # output NAME = peak(x) against values between steps (peaks.c), and where it cannot be.
 #
 #     peaks.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
+root=$2
+. "${0%/*}/../plgen.sh"
 here=$root/tests/peaks
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-runtime_archive "$root/runtime"
 
 # finds SPEC FLAGS OPTION ...
 finds() {

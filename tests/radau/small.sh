@@ -5,14 +5,9 @@
 # has no digit left, and a range tells so.
 #
 #     small.sh PLGEN SOURCE_ROOT PLRUN
-set -u
-plgen=$(realpath "$1")
 root=$2
 plrun=$(realpath "$3")
-. "${0%/*}/../tap.sh"
-. "$root/tests/run_cc.sh"
-
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 main_of reaction
 
 # reaction SCHEME STATEMENTS [OPTIONS]: into out.csv

@@ -11,26 +11,18 @@
 #define PL_SOLVED (PL_TOLERANCE / 20)
 #ifdef REAL_IS_FLOAT
 #define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
 #endif
 #define PL_STATES MODEL_STATES
 #define PL_COLUMNS MODEL_STATES
 #define PL_COORDS 1
 #define PL_STAGES 3
-#define PL_MODES 0
 #define PL_ENTRIES MODEL_ENTRIES
-#define PL_INPUTS 0
 #define PL_KNOWN 1
-#define PL_SEGMENTS 1
-#define PL_SWITCHING_FUNCTIONS 0
-#define PL_CONTACTS 0
 #define PL_ARGUMENTS 0
 #define PL_ORDER 0
 #define PL_TRIES MODEL_TRIES
 #define PL_CROWDED 0
 #define PL_SHARE_OF_FIRST 1
-#define PL_FLOORS 0
 #define PL_KIND(i) (i)
 
 #include "numbers.h"

@@ -10,7 +10,6 @@ root=$2
 shift 2
 files=$(realpath "$@")
 here=$root/tests/remainder
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
 . "${0%/*}/../compilers.sh"
 . "${0%/*}/../run_cc.sh"
 . "${0%/*}/../tap.sh"
@@ -20,18 +19,7 @@ warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wer
 list_compilers >compilers
 
 for file in $files; do
-    long || break
-    name=${file##*/}
-    while read -r compiler; do
-        if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
-            count=$((count + 1))
-            echo "ok $count - $name, ${compiler%% *} # SKIP ${compiler%% *} is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2086
-        ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" ${compiler#* } "$file" >log 2>&1
-        result $? "$name, $compiler: not a warning"
-    done <compilers
+    by_each "${file##*/}" -I"$here" -I"${file%/*}" "$file"
 done
 
 # series: the model of kind.spec by its series too, in float to single.c, of fixed order to all.c; none where it has a

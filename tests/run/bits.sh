@@ -4,13 +4,9 @@
 # scheme and both types, in float every second by turns. Every eighteenth is compiled by another compiler than the
 # generator has inside, whose bits `compilers` holds against others. With LONG=1 in the environment all are, optimised,
 # and all in float too.
-set -u
-plgen=$(realpath "$1")
 inside=$(realpath "$2")
 root=$3
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 other_cc="${CC:-cc} -std=gnu11 -O0 -ffp-contract=off -w"
 turn=0
 [ -z "${LONG:-}" ] || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"

@@ -5,12 +5,9 @@
 # with LONG=1 all. And what small processors have of their own.
 #
 #     compilers.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-. "$root/tests/tap.sh"
+root=$2
+. "${0%/*}/../plgen.sh"
 . "$root/tests/same/run.sh"
-runtime_archive "$root/runtime"
 if ! command -v tcc >log 2>&1; then
 	skip 'tcc, gcc and clang' 'tcc is not installed'
 	tap_end

@@ -3,14 +3,10 @@
 # measured.sh PLGEN JUDGE SOURCE_ROOT: needs of models that are not linear, or piecewise linear. What is chosen is
 # compiled and run; CVODE, on equations by hand, finds every sample within the need, from the spec's start and one of
 # its neighbours by turns, with LONG=1 from all of them. With MERGE=1 of more models, with LONG=1 of all.
-set -u
-plgen=$(realpath "$1")
 judge=$(realpath "$2")
 root=$3
 . "${0%/*}/../compilers.sh"
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
-runtime_archive "$root/runtime"
+. "${0%/*}/../plgen.sh"
 turn=0
 ! long || run_cc="${CC:-cc} -std=c99 -O1 -ffp-contract=off -w"
 

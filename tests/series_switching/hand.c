@@ -11,13 +11,10 @@
 #define PL_H ((real)0.0625)
 #ifdef REAL_IS_FLOAT
 #define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
 #endif
 #define PL_STATES 2
 #define PL_ACTING 0
 #define PL_FORCES 1
-#define PL_CARRIES 0
 #define PL_ORDER 2
 #define PL_COLUMNS 2
 #define PL_SWITCHING_FUNCTIONS 1
@@ -25,10 +22,6 @@
 #define PL_CHANGES 2
 #define PL_MAX_EVENTS 8
 #define PL_MAX_SPLITS 500
-#define PL_INPUTS 0
-#define PL_SEGMENTS 1
-#define PL_CHOICES 0
-#define PL_CONTACTS 0
 #define PL_FAST_PATH 0
 #define PL_FASTEST 2
 #define PL_CERTAIN 1

@@ -4,12 +4,9 @@
 # the equations as written, and whatever was kept before.
 #
 #     cached.sh PLGEN PLRUN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 plrun=$(realpath "$2")
 root=$3
-. "${0%/*}/../tap.sh"
-. "$root/tests/run_cc.sh"
+. "${0%/*}/../plgen.sh"
 CC=${run_cc%% *} CFLAGS=${run_cc#* }
 export CC CFLAGS
 
@@ -124,7 +121,6 @@ int main(void)
 	return met < 10;
 }
 END
-runtime_archive "$root/runtime"
 "$plgen" many.spec -o many.c >log 2>&1 &&
 	$run_cc -I"$root/runtime" between.c many.c "$archive" -lm -o between >log 2>&1 && ./between >log
 result $? 'NAME_at between steps changes none of their bits'

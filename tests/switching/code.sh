@@ -4,31 +4,17 @@
 # compiler (without, ../warnings asks that).
 #
 #     code.sh PLGEN SOURCE_ROOT NAME_variants.c ...
-set -u
-plgen=$(realpath "$1")
 root=$2
-shift 2
-files=$(realpath "$@")
-here=$root/tests/switching
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
+files=$(shift 2; realpath "$@")
 . "${0%/*}/../compilers.sh"
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
+. "${0%/*}/../plgen.sh"
+here=$root/tests/switching
 awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
 
 list_compilers >compilers
 
 for file in $files; do
-    long || break
-    while read -r compiler; do
-        if ! command -v "${compiler%% *}" >/dev/null 2>&1; then
-            skip "${file##*/}, ${compiler%% *}" "${compiler%% *} is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2086
-        ${compiler%% *} $warnings -I"$root/runtime" -I"$here" -I"${file%/*}" ${compiler#* } "$file" >log 2>&1
-        result $? "${file##*/}, $compiler: not a warning"
-    done <compilers
+    by_each "${file##*/}" -I"$here" -I"${file%/*}" "$file"
 done
 # shellcheck disable=SC2086
 for file in $(third 2 $files); do
@@ -136,7 +122,6 @@ printf '    switching function 0: -w + x, breakpoints 0.1, 0.2\n    switching fu
     diff - log >>log 2>&1
 result $? 'bump: sign and scale of switching functions as first written'
 
-runtime_archive "$root/runtime"
 # told SPEC T MESSAGE: plmain ends with status 1 and this message, whatever the time in it
 told() {
     name=$(sed -n 's/^model //p' "$1")

@@ -3,14 +3,10 @@
 # Independent parts of a piecewise-linear model: how large its C is, what is said of it, and the target float.
 #
 #     parts.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
+. "${0%/*}/../plgen.sh"
 here=$root/tests/switching
-. "${0%/*}/../tap.sh"
 awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
-
-runtime_archive "$root/runtime"
 
 size=$("$plgen" five.spec | wc -c)
 [ "$size" -gt 10000 ] && [ "$size" -le 102400 ] ||

@@ -7,21 +7,19 @@
 
 static uint64_t state;
 
-/* 0 .. n - 1 (a generator of Knuth, the high bits) */
-static int below(int n)
+int below(int n)
 {
 	state = state * 6364136223846793005u + 1442695040888963407u;
 	return (int)((state >> 33) % (unsigned)n);
 }
 
-/* A number of three decimals: what the spec says, to the last bit of a long double */
-static real number(double low, double high)
+real number(double low, double high)
 {
 	const long thousandths = lround(1000 * low) + below((int)lround(1000 * (high - low)) + 1);
 	return (real)thousandths / 1000;
 }
 
-static void seed_with(unsigned seed)
+void seed_with(unsigned seed)
 {
 	state = 0x9e3779b97f4a7c15u * (seed + 1);
 	for (int i = 0; i < 10; i++)
@@ -104,11 +102,25 @@ struct hand_system adversarial_system(unsigned seed)
 
 /* ---- as a spec ---- */
 
-static void print_linear(FILE *to, const struct hand_system *s, const real *row, const char *prime)
+void print_linear(FILE *to, const struct hand_system *s, const real *row, const char *prime)
 {
 	for (int i = 0; i < s->n; i++)
 		if (row[i] != 0)
 			fprintf(to, " + %.17Lg*x%d%s", row[i], i + 1, prime);
+}
+
+void print_push(FILE *to, const struct hand_system *s, int j, const char *form, const char *beyond)
+{
+	const struct hand_stop *p = &s->stop[j];
+	if (p->c == 0 && form) {
+		fprintf(to, "%.17Lg*", p->k);
+		fprintf(to, form, j + 1, j + 1);
+	} else {
+		fprintf(to, "(d%d %s 0 ? %.17Lg*d%d + %.17Lg*(0", j + 1, beyond, p->k, j + 1, p->c);
+		print_linear(to, s, p->row, "'");
+		fputs(") : 0)", to);
+	}
+	fputc('\n', to);
 }
 
 /* max(d, 0) in one of its forms; damped stops have but the last two */
@@ -118,44 +130,47 @@ static void print_stop(FILE *to, const struct hand_system *s, int j, int form)
 	const int first = p->c != 0 && form < 6 ? 6 + form % 2 : form;
 	static const char *const forms[] = { "max(d%d, 0)", "0.5*(d%d + abs(d%d))", "-min(-d%d, 0)",
 		"table(d%d; -1, 0; 0, 0; 1, 1)",
-		"(d%d - clip(d%d, -1e9, 0))", "deadzone(d%d, -1e9, 0)" };
+		"(d%d - clip(d%d, -1e9, 0))", "deadzone(d%d, -1e9, 0)", NULL, NULL };
 	fprintf(to, "let d%d = 0", j + 1);
 	print_linear(to, s, p->row, "");
 	fprintf(to, " - %.17Lg", p->gap);
 	if (p->a != 0)
 		fprintf(to, " - %.17Lg*sin(%.17Lg*t)", p->a, p->w);
 	fprintf(to, "\nlet p%d = ", j + 1);
-	if (first < 6) {
-		fprintf(to, "%.17Lg*", p->k);
-		fprintf(to, forms[first], j + 1, j + 1);
-	} else {
-		fprintf(to, "(d%d %s 0 ? %.17Lg*d%d + %.17Lg*(0", j + 1, first == 6 ? ">" : ">=", p->k, j + 1, p->c);
-		print_linear(to, s, p->row, "'");
-		fputs(") : 0)", to);
-	}
-	fputc('\n', to);
+	print_push(to, s, j, forms[first], first == 6 ? ">" : ">=");
 }
 
-void print_spec(FILE *to, const char *name, const struct hand_system *s, unsigned seed)
+void print_head(FILE *to, const char *name, const struct hand_system *s)
 {
 	fprintf(to, "model %s\ncoord x1", name);
 	for (int i = 1; i < s->n; i++)
 		fprintf(to, ", x%d", i + 1);
 	fputs("\ninit ", to);
 	for (int i = 0; i < s->n; i++)
-			fprintf(to, "%s x%d = %.17Lg, x%d' = %.17Lg", i ? "," : "", i + 1, s->start[i], i + 1,
-					s->start[s->n + i]);
-		fputc('\n', to);
+		fprintf(to, "%s x%d = %.17Lg, x%d' = %.17Lg", i ? "," : "", i + 1, s->start[i], i + 1,
+			s->start[s->n + i]);
+	fputc('\n', to);
+}
+
+void print_left(FILE *to, const struct hand_system *s, int i)
+{
+	fprintf(to, "x%d''", i + 1);
+	print_linear(to, s, s->K[i], "");
+	print_linear(to, s, s->C[i], "'");
+	for (int j = 0; j < s->stops; j++)
+		if (s->stop[j].push[i] != 0)
+			fprintf(to, " + %.17Lg*p%d", s->stop[j].push[i], j + 1);
+	fputs(" = ", to);
+}
+
+void print_spec(FILE *to, const char *name, const struct hand_system *s, unsigned seed)
+{
+	print_head(to, name, s);
 	for (int j = 0; j < s->stops; j++)
 		print_stop(to, s, j, (int)((seed + 3 * (unsigned)j) % 8));
 	for (int i = 0; i < s->n; i++) {
-		fprintf(to, "x%d''", i + 1);
-		print_linear(to, s, s->K[i], "");
-		print_linear(to, s, s->C[i], "'");
-		for (int j = 0; j < s->stops; j++)
-			if (s->stop[j].push[i] != 0)
-				fprintf(to, " + %.17Lg*p%d", s->stop[j].push[i], j + 1);
-		fprintf(to, " = %.17Lg + %.17Lg*cos(%.17Lg*t)\n", s->f0[i], s->fa[i], s->w);
+		print_left(to, s, i);
+		fprintf(to, "%.17Lg + %.17Lg*cos(%.17Lg*t)\n", s->f0[i], s->fa[i], s->w);
 	}
 	fputs("step 1\n", to);
 }

@@ -6,20 +6,6 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-static uint64_t state;
-
-static int below(int n)
-{
-	state = state * 6364136223846793005u + 1442695040888963407u;
-	return (int)((state >> 33) % (unsigned)n);
-}
-
-static real number(double low, double high)
-{
-	const long thousandths = lround(1000 * low) + below((int)lround(1000 * (high - low)) + 1);
-	return (real)thousandths / 1000;
-}
-
 /* Times between 0 and 24: some that all steps end at, some close to the one before */
 static void choose_changes(struct timed_system *s)
 {
@@ -82,9 +68,7 @@ static void uncouple(struct hand_system *s)
 struct timed_system timed_system(unsigned seed)
 {
 	struct timed_system s = { .in = { random_system(seed + 5000) } };
-	state = 0x9e3779b97f4a7c15u * (seed + 77);
-	for (int i = 0; i < 10; i++)
-		below(2);
+	seed_with(seed + 76);
 	if (seed % 4 == 3)                      /* of independent parts, where no stop is between masses */
 		uncouple(&s.in[0]);
 	choose_changes(&s);
@@ -174,13 +158,6 @@ static void print_load(FILE *to, const struct timed_system *s, const struct scal
 	}
 }
 
-static void print_row(FILE *to, const struct hand_system *s, const real *row, const char *prime)
-{
-	for (int i = 0; i < s->n; i++)
-		if (row[i] != 0)
-			fprintf(to, " + %.17Lg*x%d%s", row[i], i + 1, prime);
-}
-
 /* max(d, 0) in one of its forms; damped stops have but the last */
 static void print_stop(FILE *to, const struct timed_system *all, int j, int form)
 {
@@ -196,19 +173,11 @@ static void print_stop(FILE *to, const struct timed_system *all, int j, int form
 			moves.value[k][m] = value[m];
 	}
 	fprintf(to, "let d%d = 0", j + 1);
-	print_row(to, s, p->row, "");
+	print_linear(to, s, p->row, "");
 	fputs(" - ", to);
 	print_load(to, all, &moves, form % 2);
 	fprintf(to, "\nlet p%d = ", j + 1);
-	if (p->c == 0) {
-		fprintf(to, "%.17Lg*", p->k);
-		fprintf(to, forms[form % 5], j + 1, j + 1);
-	} else {
-		fprintf(to, "(d%d %s 0 ? %.17Lg*d%d + %.17Lg*(0", j + 1, form % 2 ? ">" : ">=", p->k, j + 1, p->c);
-		print_row(to, s, p->row, "'");
-		fputs(") : 0)", to);
-	}
-	fputc('\n', to);
+	print_push(to, s, j, forms[form % 5], form % 2 ? ">" : ">=");
 }
 
 static void print_force(FILE *to, const struct timed_system *s, int i, bool all)
@@ -225,24 +194,11 @@ static void print_force(FILE *to, const struct timed_system *s, int i, bool all)
 void print_timed(FILE *to, const char *name, const struct timed_system *s, unsigned seed)
 {
 	const struct hand_system *first = s->in;
-	fprintf(to, "model %s\ncoord x1", name);
-	for (int i = 1; i < first->n; i++)
-		fprintf(to, ", x%d", i + 1);
-	fputs("\ninit ", to);
-	for (int i = 0; i < first->n; i++)
-		fprintf(to, "%s x%d = %.17Lg, x%d' = %.17Lg", i ? "," : "", i + 1, first->start[i], i + 1,
-			first->start[first->n + i]);
-	fputc('\n', to);
+	print_head(to, name, first);
 	for (int j = 0; j < first->stops; j++)
 		print_stop(to, s, j, (int)((seed + 3 * (unsigned)j) % 10));
 	for (int i = 0; i < first->n; i++) {
-		fprintf(to, "x%d''", i + 1);
-		print_row(to, first, first->K[i], "");
-		print_row(to, first, first->C[i], "'");
-		for (int j = 0; j < first->stops; j++)
-			if (first->stop[j].push[i] != 0)
-				fprintf(to, " + %.17Lg*p%d", first->stop[j].push[i], j + 1);
-		fputs(" = ", to);
+		print_left(to, first, i);
 		print_force(to, s, i, seed % 2);
 		fputc('\n', to);
 	}

@@ -3,15 +3,11 @@
 # Drives with gaps that turn freely, for 10^7 steps, in double and float.
 #
 #     turning.sh PLGEN SOURCE_ROOT
-set -u
-plgen=$(realpath "$1")
 root=$2
-here=$root/tests/switching
 warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
-. "${0%/*}/../tap.sh"
+. "${0%/*}/../plgen.sh"
+here=$root/tests/switching
 awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exit 99
-
-runtime_archive "$root/runtime"
 
 # turns KIND SPEC WHAT
 turns() {

@@ -2,15 +2,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # coefficients.sh PLGEN DRAWN_SERIES SOURCE FIRST COUNT: for COUNT seeds the series that the generated code makes of
 # random equations, beside the coefficients that drawn_series finds by Cauchy's integral.
-set -u
-plgen=$(realpath "$1")
 drawn_series=$(realpath "$2")
-source=$(realpath "$3")
+root=$3
 first=$4
 many=$5
-. "$source/tests/run_cc.sh"
-. "$source/tests/tap.sh"
-runtime_archive "$source/runtime"
+. "${0%/*}/../plgen.sh"
 
 # made SEED: the program `compare`, and its order
 made() {
@@ -23,7 +19,7 @@ made() {
 		defines="$defines -DRELATIVE"
 	fi
 	# shellcheck disable=SC2086
-	$run_cc $defines -I. -I"$source/runtime" "$source/tests/taylor/compare_series.c" \
+	$run_cc $defines -I. -I"$root/runtime" "$root/tests/taylor/compare_series.c" \
 		drawn_pl.c "$archive" -lm -o compare &&
 		order=$(./compare order)
 }

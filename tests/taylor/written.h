@@ -17,38 +17,23 @@
 #define PL_TOLERANCE ((real)(MODEL_TOLERANCE))
 #ifdef REAL_IS_FLOAT
 #define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
 #endif
 #define PL_STATES MODEL_STATES
 #define PL_COLUMNS MODEL_STATES
-#define PL_MEASURED 0
 #define PL_ORDER 12
-#define PL_INPUTS 0
-#define PL_SEGMENTS 1
 #ifdef MODEL_BREAKPOINT
 #define PL_SWITCHING_FUNCTIONS 1
 #define PL_TERMS 1
 #define PL_CHANGES 2
 #define PL_MAX_EVENTS 8
 #define PL_MAX_SPLITS 500
-#else
-#define PL_SWITCHING_FUNCTIONS 0
-#define PL_TERMS 0
 #endif
-#define PL_CONTACTS 0
-#define PL_CHOICES 0
 #define PL_ADAPTIVE 1
-#define PL_WATCHED 0
 #define PL_REMAINDERS 3
 #define PL_KINDS MODEL_KINDS
 #define PL_KIND(i) ((i) % 2)
-#define PL_FLOORS 0
-#define PL_UNRESOLVED 0
-#define PL_SLOPES 0
 #define PL_OVER 1
 #define PL_PARTS 1
-#define PL_STRAIGHT 0
 #define PL_WRITTEN_OUT 0
 #define PL_SERVES 1
 #define PL_TRIES 1000

@@ -526,19 +526,10 @@ static void run(struct trial_batch *b)
 int main(int argc, char **argv)
 {
     unsigned long pairs = 50, others = 40, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:m:s:v")) != -1;) {
-        if (option == 'n')
-            pairs = strtoul(optarg, NULL, 10);
-        else if (option == 'm')
-            others = strtoul(optarg, NULL, 10);
-        else if (option == 's')
-            seed = strtoul(optarg, NULL, 10);
-        else if (option == 'v')
-            verbose = true;
-        else
-            return 2;
-    }
     memory_open();
+    take_options(argc, argv, (struct command_option[]){
+        { 'n', &pairs }, { 'm', &others }, { 's', &seed }, { 'v', .on = &verbose }, { 0 }
+    });
     if (BITS == 24)
         target_float();
     for (int i = optind; i < argc; i++) {

@@ -8,26 +8,12 @@
 #     compile.sh PLGEN SOURCE_ROOT MODEL.spec ...
 #
 # The compilers are those of GCCS and CLANGS (default: gcc g++, clang clang++); what is not installed is skipped.
-set -u
-plgen=$(realpath "$1")
-root=$(realpath "$2")
-shift 2
-specs=
-for spec; do
-    case $spec in /*) ;; *) spec=$PWD/$spec ;; esac
-    specs="$specs $spec"
-done
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Werror'
+root=$2
+specs=$(shift 2; realpath -s "$@" | tr '\n' ' ')
 . "${0%/*}/../compilers.sh"
-. "${0%/*}/../run_cc.sh"
-. "${0%/*}/../tap.sh"
+. "${0%/*}/../plgen.sh"
 
-{
-    for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-        echo "${pair% *} -std=c99 -ffreestanding -O"
-        echo "${pair#* } -std=c++17 -x c++ -fsyntax-only"
-    done
-} >compilers
+languages '-ffreestanding -O' -fsyntax-only >compilers
 
 # compiles NAME FILE.c ...: each becomes an object, whose names are looked at; with LONG=1 by each compiler, without a
 # warning
@@ -39,15 +25,7 @@ compiles() {
         result $? "$what: compiles"
         return
     fi
-    while read -r compiler options; do
-        if ! command -v "$compiler" >/dev/null 2>&1; then
-            skip "$what, $compiler" "$compiler is not installed"
-            continue
-        fi
-        # shellcheck disable=SC2086
-        "$compiler" $warnings -I"$root/runtime" $options -c "$@" >log 2>&1
-        result $? "$what, $compiler ${options%% *}"
-    done <compilers
+    by_each "$what" -c "$@"
 }
 
 # calls_only_the_runtime OF_PARAMS OBJECT ...: what they call beyond their own, and the functions that their specs have
@@ -106,7 +84,6 @@ done
 
 # ---- the driver for hosts ----
 
-runtime_archive "$root/runtime"
 # shellcheck disable=SC2086
 for real in double float; do
     define=

@@ -294,17 +294,10 @@ static void run(const char *name, const char *text)
 int main(int argc, char **argv)
 {
     unsigned long count = 100, seed = 1;
-    for (int option; (option = getopt(argc, argv, "n:s:v")) != -1;) {
-        if (option == 'n')
-            count = strtoul(optarg, NULL, 10);
-        else if (option == 's')
-            seed = strtoul(optarg, NULL, 10);
-        else if (option == 'v')
-            verbose = true;
-        else
-            return 2;
-    }
     memory_open();
+    take_options(argc, argv, (struct command_option[]){
+        { 'n', &count }, { 's', &seed }, { 'v', .on = &verbose }, { 0 }
+    });
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), read_text(argv[i]));
     for (unsigned long i = 0; i < count; i++)

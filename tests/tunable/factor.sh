@@ -4,12 +4,8 @@
 # Against the whole model with the same values written down, output by output, to 1e-12 of the largest. And ranges of
 # params, which NAME_retune looks at: of a linear model, of one that reads params in its step, of regions, of what
 # follows from params.
-set -u
-plgen=$(realpath "$1")
-root=$(cd "$2" && pwd) || exit 99
-. "$root/tests/run_cc.sh"
-. "$root/tests/tap.sh"
-runtime_archive "$root/runtime"
+root=$2
+. "${0%/*}/../plgen.sh"
 
 cat >bare.spec <<'EOS'
 model bare

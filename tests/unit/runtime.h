@@ -51,9 +51,13 @@ static inline uint64_t random_word(void)
     return seed * 0x2545F4914F6CDD1Du;
 }
 
+/* What models of these tests are: real.h has said it of its own files. */
+#undef PL_SINGLE
 #ifdef REAL_IS_FLOAT
+#define SINGLE 1
 #define real_of(v) mpfr_get_flt(v, MPFR_RNDN)
 #else
+#define SINGLE 0
 #define real_of(v) mpfr_get_d(v, MPFR_RNDN)
 #endif
 
@@ -82,6 +86,37 @@ static inline pl_two word_of(double v)
     t.hi = (real)v;
     t.lo = 0;
     return t;
+}
+
+/* Rates, and times to ask them at */
+#ifdef REAL_IS_FLOAT
+enum { RATE_WORDS = 2, LONGEST = 600, EXPONENTS = 400, SCALES = 120, LEAST_SCALE = -100 };
+#define NUMBER "%.9g"
+#define SPECIAL_TIMES {0.0f, -0.0f, 1.0f, -1.0f, 0x1p-149f, -0x1p-149f, 0x1.fffffep127f, 0x1p-126f, \
+                       0x0.fffffep-126f, 1e30f, -1e-30f, 0.01f, 30.0f}
+#else
+enum { RATE_WORDS = 3, LONGEST = 2600, EXPONENTS = 500, SCALES = 240, LEAST_SCALE = -140 };
+#define NUMBER "%.17g"
+#define SPECIAL_TIMES {0.0, -0.0, 1.0, -1.0, 0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, 0x1p-1022, \
+                       0x0.fffffffffffffp-1022, 1e300, -1e-300, 0.01, 30.0}
+#endif
+
+/* words 2^-exponent, with a random significand */
+static inline pl_rate random_rate(mpfr_t value, int exponent)
+{
+    pl_rate rate;
+    mpz_t z;
+    int i;
+    for (i = 0; i < RATE_WORDS; i++)
+        rate.word[i] = random_word();
+    rate.word[0] |= (uint64_t)1 << 63;
+    rate.exponent = exponent;
+    mpz_init(z);
+    mpz_import(z, RATE_WORDS, 1, sizeof rate.word[0], 0, 0, rate.word);
+    mpfr_set_z(value, z, MPFR_RNDN);
+    mpfr_mul_2si(value, value, -(long)exponent, MPFR_RNDN);
+    mpz_clear(z);
+    return rate;
 }
 
 /* How many samples to draw, of `all`: every one in the long form (LONG in the environment), else a tenth. */

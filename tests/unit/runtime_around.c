@@ -3,12 +3,9 @@
  * (peaks.h), many instances one by one (each.h) and in lanes (batch.h). */
 #include "runtime.h"
 
-#undef PL_SINGLE
 #ifdef REAL_IS_FLOAT
-#define SINGLE 1
 #define LANES pl_lanesf
 #else
-#define SINGLE 0
 #define LANES pl_lanes
 #endif
 
@@ -202,15 +199,12 @@ static const real swinging_bend[2][2] = {{(real)(SWING_H * SWING_H / 8), (real)(
 #define PL_STATES 2
 #define PL_SIZE 2
 #define PL_PEAKS 2
-#define PL_INPUTS 0
 #define PL_OUTPUTS 3
 #define PL_H ((real)SWING_H)
 #define PL_SLOPE swinging_slope
 #define PL_BEND swinging_bend
 #define PL_PEAK_ROW(c, p) swinging_row[p]
-#define PL_OWN 0
 #define PL_REACHES 0
-#define PL_BY_VALUES 0
 void swinging_step(swinging *s);
 void swinging_out(const swinging *s, real out[3]);
 #include "peaks.h"
@@ -412,10 +406,7 @@ PL_LANES_INLINE void driven_lanes_out(const LANES *y, const LANES *factor, const
 #define PL_SHARED 1
 #define PL_FACTORS 0
 #define PL_LANES 0
-#define PL_PEAKS 0
 #define PL_SIZE 3
-#define PL_MOMENTA 0
-#define PL_SAMPLED 0
 #define PL_FLUSHES 1
 #define PL_DECAYING 1
 void driven_batch_init(instances *b);

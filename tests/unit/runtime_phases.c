@@ -9,29 +9,11 @@
 #define pl_phase_times pl_phasef_times
 #define pl_phase_at pl_phasef_at
 #define pl_cossin pl_cossinf
-enum {
-    RATE_WORDS = 2,
-    TURN_BITS = 64,
-    LONGEST = 600,
-    EXPONENTS = 400,
-    SCALES = 120,
-    LEAST_SCALE = -100,
-    ANGLES = 200000
-};
+enum { TURN_BITS = 64, ANGLES = 200000 };
 #define TOLERANCE 0.52 /* of a cosine, in units of the last place */
-#define NUMBER "%.9g"
 #else
-enum {
-    RATE_WORDS = 3,
-    TURN_BITS = 128,
-    LONGEST = 2600,
-    EXPONENTS = 500,
-    SCALES = 240,
-    LEAST_SCALE = -140,
-    ANGLES = 50000
-};
+enum { TURN_BITS = 128, ANGLES = 50000 };
 #define TOLERANCE 0.6
-#define NUMBER "%.17g"
 #endif
 #define TURN "%016" PRIx64 " %016" PRIx64
 
@@ -223,24 +205,6 @@ static void phase_after_a_thousand_million_steps(void **state)
     mpfr_clears(step, exact, found, (mpfr_ptr)0);
 }
 
-/* words 2^-exponent, with a random significand */
-static pl_rate random_rate(mpfr_t value, int exponent)
-{
-    pl_rate rate;
-    mpz_t z;
-    int i;
-    for (i = 0; i < RATE_WORDS; i++)
-        rate.word[i] = random_word();
-    rate.word[0] |= (uint64_t)1 << 63;
-    rate.exponent = exponent;
-    mpz_init(z);
-    mpz_import(z, RATE_WORDS, 1, sizeof rate.word[0], 0, 0, rate.word);
-    mpfr_set_z(value, z, MPFR_RNDN);
-    mpfr_mul_2si(value, value, -(long)exponent, MPFR_RNDN);
-    mpz_clear(z);
-    return rate;
-}
-
 static void assert_turn_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, real t)
 {
     pl_phase found, expected;
@@ -254,13 +218,7 @@ static void assert_turn_at(const pl_rate *rate, mpfr_t value, mpfr_t scratch, re
 
 static void phase_at_any_time(void **state)
 {
-#ifdef REAL_IS_FLOAT
-    static const real special[] = {0.0f, -0.0f, 1.0f, -1.0f, 0x1p-149f, -0x1p-149f, 0x1.fffffep127f, 0x1p-126f,
-                                   0x0.fffffep-126f, 1e30f, -1e-30f, 0.01f, 30.0f};
-#else
-    static const real special[] = {0.0, -0.0, 1.0, -1.0, 0x1p-1074, -0x1p-1074, 0x1.fffffffffffffp1023, 0x1p-1022,
-                                   0x0.fffffffffffffp-1022, 1e300, -1e-300, 0.01, 30.0};
-#endif
+    static const real special[] = SPECIAL_TIMES;
     mpfr_t value, scratch;
     int i;
     (void)state;

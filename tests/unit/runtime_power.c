@@ -322,11 +322,7 @@ static void tripled_step(tripled *s)
     crossed += s->segment != before;
 }
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) tripled_##name
 #define PL_TYPE tripled
 #define PL_STATES 1
@@ -334,9 +330,7 @@ static void tripled_step(tripled *s)
 #define PL_SIZE 2
 #define PL_SEGMENTS 3
 #define PL_BLOCKS 1
-#define PL_CONVERTED 0
 #define PL_COMPENSATED 1
-#define PL_CARRIES 0
 #define PL_PHI tripled_Phi
 #define PL_ENTRIES 5
 #define PL_H 1
@@ -359,41 +353,25 @@ static void from_change_to_change(void **state)
     }
 }
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) paired_##name
 #define PL_TYPE paired
 #define PL_STATES 2
 #define PL_LOAD_STATES 1
 #define PL_SIZE 2
-#define PL_SEGMENTS 1
 #define PL_BLOCKS 2
-#define PL_CONVERTED 0
-#define PL_COMPENSATED 0
-#define PL_CARRIES 0
 #define PL_PHI paired_Phi
 #define PL_ENTRIES 2
 #define PL_H 1
 void paired_jump(paired *s, uint64_t n);
 #include "jump.h"
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) paired_##name
 #define PL_TYPE paired
 #define PL_STATES 2
-#define PL_INPUTS 0
 #define PL_OUTPUTS 1
-#define PL_INSIDE 0
 #define PL_ROWS 4
-#define PL_OVER 0
-#define PL_REFRESHED 0
 void paired_run(paired *s, size_t n, real *out);
 #include "run.h"
 
@@ -434,11 +412,7 @@ static const real lowest = (real)0x1p-116, beside = (real)0x1p-120;
 static const real lowest = 0x1p-963, beside = 0x1p-900;
 #endif
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) faded_##name
 #define PL_TYPE faded
 #define PL_STATES 3
@@ -446,11 +420,7 @@ static const real lowest = 0x1p-963, beside = 0x1p-900;
 #define PL_DECAYING 2
 #include "flush.h"
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) faded_whole_##name
 #define PL_TYPE faded_whole
 #define PL_STATES 3
@@ -500,11 +470,7 @@ static void faded_block(faded *s, real *out)
 #define faded_whole_out faded_out
 #define faded_whole_block faded_block
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) faded_##name
 #define PL_TYPE faded
 #define PL_STATES 3
@@ -514,11 +480,7 @@ static void faded_block(faded *s, real *out)
 void faded_run(faded *s, size_t n, real *out);
 #include "run.h"
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) faded_whole_##name
 #define PL_TYPE faded_whole
 #define PL_STATES 3

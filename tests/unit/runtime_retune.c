@@ -290,18 +290,13 @@ static real swung_time(const swung *s) { return s->now; }
 static void swung_place(swung *s) { s->placed++; }
 static void swung_frequencies(const swung *s, real w[]) { w[0] = s->coeffs.params[0]; }
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) swung_##name
 #define PL_TYPE swung
 #define PL_PARAMS 2
 #define PL_H ((real)0.25)
 #define PL_RETUNED 0
 #define PL_LEADS 1
-#define PL_MODES 0
 #define PL_PLACES 1
 int swung_retune(swung_coeffs *c, const real params[2], real h);
 void swung_use(swung *s, const swung_coeffs *c);

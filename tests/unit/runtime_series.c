@@ -293,18 +293,13 @@ static void pushed_at(double t, double at[2])
 	at[0] = t < 1 ? t * t : 1 + 2 * late - late * late / 2 + end * at[1];
 }
 
-#ifdef REAL_IS_FLOAT
-#define PL_SINGLE 1
-#else
-#define PL_SINGLE 0
-#endif
+#define PL_SINGLE SINGLE
 #define PL(name) pushed_##name
 #define PL_TYPE pushed
 #define PL_STATES 2
 #define PL_SIZE 3
 #define PL_SEGMENTS 3
 #define PL_DEGREE 2
-#define PL_HALVINGS 0
 #define PL_CHANGING 1
 #define PL_FIRST 2
 #define PL_FORCED 1

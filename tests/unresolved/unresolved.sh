@@ -3,14 +3,11 @@
 # unresolved.sh PLGEN UNSEEN SOURCE FIRST COUNT: that many random models with what coefficients at one time do not show,
 # by adaptive series, by both and by collocation, beside extrapolation in long double with short steps (unresolved.c);
 # FIRST from 1000000 on: those that are given. What is wrong has to be told; no more than one in twenty may be.
-plgen=$(realpath "$1")
 unresolved=$(realpath "$2")
-source=$(realpath "$3")
+root=$3
 first=$4
 models=$5
-. "$source/tests/tap.sh"
-. "$source/tests/run_cc.sh"
-runtime_archive "$source/runtime"
+. "${0%/*}/../plgen.sh"
 cat >drive.c <<'END'
 #include "m.h"
 #include <math.h>
@@ -40,7 +37,7 @@ rows() {
 	"$unresolved" spec "$1" >m.spec
 	for scheme in taylor auto radau; do
 		"$plgen" --scheme "$scheme" m.spec -o m.c >>log 2>&1 &&
-			$run_cc -I. -I"$source/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
+			$run_cc -I. -I"$root/runtime" -o drive drive.c m.c "$archive" -lm >>log 2>&1 &&
 			./drive "$scheme" 2>>log | awk '{ status = $NF; $NF = ""; sub(" ", " " status " "); print }'
 	done
 }

@@ -11,15 +11,12 @@
 set -u
 plgen=$(realpath "$1")
 root=$(realpath "$2")
-warnings='-Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-qual -Werror'
 . "$root/tests/compilers.sh"
+warnings="$warnings -Wcast-qual"
 . "$root/tests/tap.sh"
 . "$root/tests/same/run.sh"
 
-for pair in "${GCCS:-gcc g++}" "${CLANGS:-clang clang++}"; do
-	echo "${pair% *} -std=c99"
-	echo "${pair#* } -std=c++17 -x c++"
-done >compilers
+languages >compilers
 
 # Lines NUMBER; RUN, the kind by its number: all, or those whose folder, or whose options of that kind, no line before
 # has

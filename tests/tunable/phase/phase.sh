@@ -2,12 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # phase.sh PLGEN SOURCE REAL: frequencies that change while a model runs, in every scheme that takes tunable params;
 # phase.c says what is compared. Every third of the programs is sanitized, with LONG=1 in the environment all.
-plgen=$(realpath "$1")
-source=$(realpath "$2")
+root=$2
 real=$3
-. "$source/tests/tap.sh"
-. "$source/tests/run_cc.sh"
-runtime_archive "$source/runtime"
+. "${0%/*}/../../plgen.sh"
 float=''
 [ "$real" = double ] || float=-DREAL_FLOAT
 sanitizing="${CC:-cc} -std=c11 -O0 -fsanitize=undefined -fno-sanitize-recover"
@@ -23,9 +20,9 @@ drive() {
 	compile=$run_cc
 	{ ! long && [ $((turn % 3)) -ne 1 ]; } || compile=$sanitizing
 	# shellcheck disable=SC2086
-	"$plgen" --real "$real" ${3:+--scheme "$3"} -o phase_pl.c "$source/tests/tunable/phase/$1.spec" >log 2>&1 &&
-		$compile $float -DTOLERANCE="$tolerance" -I. -I"$source/runtime" -I"$source/tests/emitted" -o phase \
-			"$source/tests/tunable/phase/phase.c" phase_pl.c "$source/tests/emitted/tap.c" "$archive" -lm \
+	"$plgen" --real "$real" ${3:+--scheme "$3"} -o phase_pl.c "$root/tests/tunable/phase/$1.spec" >log 2>&1 &&
+		$compile $float -DTOLERANCE="$tolerance" -I. -I"$root/runtime" -I"$root/tests/emitted" -o phase \
+			"$root/tests/tunable/phase/phase.c" phase_pl.c "$root/tests/emitted/tap.c" "$archive" -lm \
 			>>log 2>&1 &&
 		./phase >>log 2>&1
 	status=$?
