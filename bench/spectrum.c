@@ -262,12 +262,6 @@ static struct method {
 };
 enum { METHODS = sizeof methods / sizeof *methods };
 
-static int rising(const void *a, const void *b)
-{
-	double d = *(const double *)a - *(const double *)b;
-	return (d > 0) - (d < 0);
-}
-
 static double error_of(const struct method *m, int p)
 {
 	return fabs(m->sd[p] - truth[p]) / truth[p];
@@ -278,9 +272,9 @@ static void tell(const struct method *m)
 	double error[PERIODS];
 	for (int p = 0; p < PERIODS; p++)
 		error[p] = error_of(m, p);
-	qsort(error, PERIODS, sizeof *error, rising);
+	const double half = median(error);
 	printf("%-42s %8.2f ms %7.2f ns  %8.1e  %8.1e\n", m->name, 1e3 * m->best, 1e9 * m->best / PERIODS / SAMPLES,
-	       error[PERIODS - 1], error[PERIODS / 2]);
+	       error[PERIODS - 1], half);
 }
 
 static void write_file(const char *name)

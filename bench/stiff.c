@@ -123,16 +123,9 @@ static double error_of(double (*out)[2], double (*truth)[2])
 	return worst / most;
 }
 
-static int order(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
 static void report(const struct equations *e, const char *what, double tolerance, double *took, double error)
 {
-	qsort(took, RUNS, sizeof *took, order);
-	printf("| `%s` | %.0e | %s | %.0f | %.1e |\n", e->name, tolerance, what, took[RUNS / 2] / 1000, error);
+	printf("| `%s` | %.0e | %s | %.0f | %.1e |\n", e->name, tolerance, what, middle(RUNS, took) / 1000, error);
 }
 
 int main(void)

@@ -151,8 +151,14 @@ static void propagator_restart(struct run *run)
 	memcpy(r->z, r->start, (size_t)r->size * sizeof *r->z);
 	if (r->modes)
 		modes_restart(r);
-	r->units = 0;
 	r->failed = false;
+}
+
+/* What is not finite stays so: looked at once is enough */
+static bool goes_on(struct propagator *r)
+{
+	r->failed = r->failed || !all_finite(r->own, r->z);
+	return !r->failed;
 }
 
 static inline __attribute__((always_inline)) bool march(struct run *run, int units, double *rows,
@@ -164,9 +170,7 @@ static inline __attribute__((always_inline)) bool march(struct run *run, int uni
 		if (rows)
 			memcpy(rows + (ptrdiff_t)u * r->own, r->z, (size_t)r->own * sizeof *rows);
 	}
-	r->units += units;
-	r->failed = r->failed || !all_finite(r->own, r->z); /* what is not finite stays so: looked at once is enough */
-	return !r->failed;
+	return goes_on(r);
 }
 
 static bool loop_advance(struct run *run, int units, double *rows)
@@ -188,9 +192,7 @@ static bool fixed_size_advance(struct run *run, int units, double *rows)
 			memcpy(rows + (ptrdiff_t)u * FOUR, z, sizeof z);
 	}
 	memcpy(r->z, z, sizeof z);
-	r->units += units;
-	r->failed = r->failed || !all_finite(FOUR, z);
-	return !r->failed;
+	return goes_on(r);
 }
 
 static bool dgemv_advance(struct run *run, int units, double *rows)
@@ -207,9 +209,7 @@ static bool literals_advance(struct run *run, int units, double *rows)
 {
 	struct propagator *r = (struct propagator *)run;
 	r->literals(r->z, units, rows);
-	r->units += units;
-	r->failed = r->failed || !all_finite(r->own, r->z);
-	return !r->failed;
+	return goes_on(r);
 }
 
 /* ---- in float: the matrix, the state and the rows ---- */
@@ -254,9 +254,7 @@ static bool single_timed(struct run *run, int units)
 		}
 	for (int i = 0; i < r->size; i++)
 		r->z[i] = z[i];
-	r->units += units;
-	r->failed = r->failed || !all_finite(r->own, r->z);
-	return !r->failed;
+	return goes_on(r);
 }
 
 static bool single_advance(struct run *run, int units, double *rows)

@@ -12,7 +12,6 @@ struct propagator {
 	int own, size;              /* entries of y, and of z */
 	int steps;                  /* in a unit */
 	double h;
-	long units;                 /* gone since the start */
 	bool failed;
 	double *generator;          /* size x size, row-major: z' = generator z */
 	double *start;              /* z at t = 0 */

@@ -219,29 +219,7 @@ static inline void ask(struct adaptive *a, double t, const double *y, double *f)
 #define JACOBIAN(t, y, Jq, Jv) beam_jacobian(15.0, t, Jq, Jv)
 #include "radau_step.h"
 
-/* In closed form, or by differences */
-static void other_jacobian(struct radau *d)
-{
-	struct adaptive *a = &d->adaptive;
-	const struct problem *p = a->run.problem;
-	const int n = a->n;
-	double moved[2 * MOST_COORDINATES], f[2 * MOST_COORDINATES];
-	jacobian_function *jacobian = jacobian_of(p);
-	if (jacobian) {
-		jacobian(p, d->t, d->y, d->Jq, d->Jv);
-		return;
-	}
-	memcpy(moved, d->y, (size_t)a->size * sizeof *moved);
-	for (int j = 0; j < a->size; j++) {
-		volatile double sum = d->y[j] + sqrt(DBL_EPSILON) * (a->scale[j] + fabs(d->y[j]));
-		moved[j] = sum;
-		slope(a, d->t, moved, f);
-		for (int i = 0; i < n; i++)
-			(j < n ? d->Jq : d->Jv)[i * n + j % n] = (f[n + i] - d->slope[n + i]) / (sum - d->y[j]);
-		moved[j] = d->y[j];
-	}
-}
-
+static void other_jacobian(struct radau *d);
 #define COORDINATES d->adaptive.n
 #define EXTENT MOST_COORDINATES
 #define SLOPES(t, y, f) ask(&d->adaptive, t, y, f)
@@ -251,6 +229,19 @@ static void other_jacobian(struct radau *d)
 
 #define INSTANCE(part) other_##part
 #include "radau_step.h"
+
+#ifndef ONE_MODEL
+/* In closed form, or by differences */
+static void other_jacobian(struct radau *d)
+{
+	const struct problem *p = d->adaptive.run.problem;
+	jacobian_function *jacobian = jacobian_of(p);
+	if (jacobian)
+		jacobian(p, d->t, d->y, d->Jq, d->Jv);
+	else
+		other_differences(d, 0);
+}
+#endif
 
 struct instance {
 	const char *name;

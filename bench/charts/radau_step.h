@@ -5,6 +5,23 @@
 #define EACH _Pragma("GCC unroll 4") for (int m = 0; m < COORDINATES; m++)
 #define STAGES(i) _Pragma("GCC unroll 8") for (int i = 0; i < s; i++)
 
+/* By forward differences; of entries of the state from `first` on, of others 0 */
+INLINE void INSTANCE(differences)(struct radau *d, const int first)
+{
+	const int n = COORDINATES, size = 2 * n;
+	double moved[2 * EXTENT], f[2 * EXTENT];
+	memcpy(moved, d->y, (size_t)size * sizeof *moved);
+	for (int j = first; j < size; j++) {
+		volatile double sum = d->y[j] + sqrt(DBL_EPSILON) * (d->adaptive.scale[j] + fabs(d->y[j]));
+		moved[j] = sum;
+		SLOPES(d->t, moved, f);
+		d->adaptive.run.asked++;
+		for (int i = 0; i < n; i++)
+			(j < n ? d->Jq : d->Jv)[i * n + j % n] = (f[n + i] - d->slope[n + i]) / (sum - d->y[j]);
+		moved[j] = d->y[j];
+	}
+}
+
 /* (I - h mu Jv - h^2 mu^2 Jq) of each eigenvalue, factored */
 INLINE void INSTANCE(factor)(struct radau *d, double h, const int s)
 {

@@ -16,32 +16,13 @@ INLINE void whole_slope(double t, const double *state, double *f)
 		f[i] = state[N + i];
 }
 
-struct radau;
-static void own_jacobian(struct radau *d);
 #define complex _Complex
 #define I _Complex_I
 #define COORDINATES OWN_COORDINATES
 #define EXTENT OWN_COORDINATES
 #define SLOPES(t, y, f) whole_slope(t, y, f)
-#define JACOBIAN(t, y, Jq, Jv) own_jacobian(d)
+#define JACOBIAN(t, y, Jq, Jv) other_differences(d, WHOLE - N)
 #include "../radau.c"
-
-/* By differences */
-static void own_jacobian(struct radau *d)
-{
-	enum { n = OWN_COORDINATES };
-	double moved[WHOLE], f[WHOLE];
-	memcpy(moved, d->y, sizeof moved);
-	for (int j = WHOLE - N; j < WHOLE; j++) {
-		volatile double sum = d->y[j] + sqrt(DBL_EPSILON) * (d->adaptive.scale[j] + fabs(d->y[j]));
-		moved[j] = sum;
-		whole_slope(d->t, moved, f);
-		for (int i = 0; i < n; i++)
-			(j < n ? d->Jq : d->Jv)[i * n + j % n] =
-				(f[n + i] - d->slope[n + i]) / (sum - d->y[j]);
-		moved[j] = d->y[j];
-	}
-}
 
 static void as_whole(const double *y, double *state)
 {
