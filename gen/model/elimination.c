@@ -159,9 +159,13 @@ void eliminate_dependent(struct building *b, struct segment_equations *s)
 		s->residual[i].form = independent(&e, s->residual[i].form);
 	for (int i = 0; i < b->spec->count.multipliers && b->eliminates; i++)
 		s->multiplier[i] = independent(&e, s->multiplier[i]);
-	if (b->eliminates)
-		take_accelerations(&e);
-	for (int j = 0; j < b->model->n && b->eliminates; j++)
-		if (e.follows[1][j])
+	if (!b->eliminates)
+		return;
+	take_accelerations(&e);
+	b->model->equations.misses = 0;
+	for (int j = 0; j < b->model->n; j++)
+		if (e.follows[1][j]) {
 			hold_dependent(&e, j);
+			b->model->equations.misses += e.follows[0][j] ? 2 : 1;
+		}
 }

@@ -115,7 +115,8 @@ static void derive_residuals(struct linearising *l)
 		struct form **by = residuals_by(l, j < l->n ? j : l->states + j);
 		l->slope[j] = ARRAY(struct form *, l->rows);
 		for (int i = 0; i < l->rows; i++)
-			l->slope[j][i] = i < l->n || j >= l->n || constraint_of(l, i)->by[0]
+			l->slope[j][i] = i < l->n || j >= l->n || constraint_of(l, i)->by[0] ||
+							 l->b->model->system.velocity[j] < 0
 						 ? by[i] : residuals_by(l, l->b->model->system.velocity[j])[i];
 	}
 }

@@ -536,7 +536,8 @@ void build_system(struct building *b)
 	b->eliminates = may_eliminate(b);
 	for (int s = 0; s < system->segments; s++)
 		add_elements(b, &b->segment_equations[s]);
-	model->equations.eliminated = b->eliminates;
+	if (!b->eliminates)
+		model->equations.misses = 0;
 	if (b->eliminates && !diagnostics_errors())
 		read_multipliers(b);
 	if (diagnostics_errors() || !choose_scheme(b))

@@ -30,8 +30,9 @@ static void text_of_linear(FILE *to, const struct model *model)
 							: "There is no remainder: nothing");
 	if (model->reduction.truncated)
 		text_kept_modes(to, model);
-	if (model->equations.eliminated)
-		fprintf(to, "Constraints hold as exactly: what a state misses of them decays with poles at -%d/h.\n",
+	if (model->equations.misses)
+		fprintf(to, "Constraints hold as exactly: what a state misses of them decays with poles at -%d/h, "
+			"which stand in P(s) and not in B(s).\n",
 			DECAY_OF_MISSES);
 }
 

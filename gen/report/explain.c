@@ -53,9 +53,8 @@ static void text_loads(FILE *to, const struct linear *system)
 
 static void text_poles(FILE *to, const struct model *model, const struct resolvent *resolvent)
 {
-	int length = resolvent_determinant(resolvent)->length;
-	mpq_t *B = rationals(length);
-	characteristic_polynomial(resolvent, B);
+	mpq_t *B;
+	const int length = characteristic_of(model, resolvent, &B);
 	fprintf(to, "\n    B(s) = %s\n\n", polynomial_text(length, B));
 	struct pole_report *pole;
 	int count = poles_of(model, resolvent, &pole);

@@ -44,9 +44,8 @@ static void json_modes(FILE *to, int count, const struct pole_report *pole)
 
 static void json_poles(FILE *to, const struct step *step)
 {
-	int length = resolvent_determinant(step->written)->length;
-	mpq_t *B = rationals(length);
-	characteristic_polynomial(step->written, B);
+	mpq_t *B;
+	const int length = characteristic_of(step->model, step->written, &B);
 	fputs("  \"B\": [", to);
 	for (int k = 0; k < length; k++)
 		fprintf(to, "%s\"%s\"", k ? ", " : "", exact_text(B[k]));

@@ -169,9 +169,8 @@ static void print_matrix(FILE *to, const char *name, const struct model *model, 
 
 static void print_determinant(FILE *to, const struct step *step)
 {
-	int length = resolvent_determinant(step->written)->length;
-	mpq_t *B = rationals(length);
-	characteristic_polynomial(step->written, B);
+	mpq_t *B;
+	const int length = characteristic_of(step->model, step->written, &B);
 	fprintf(to, "<p>Characteristic polynomial, det P(s):</p>\n<pre>    B(s) = %s</pre>\n",
 		polynomial_text(length, B));
 }

@@ -68,7 +68,7 @@ struct equations {                  /* as they are written */
 	struct equilibrium *equilibrium;
 	/* per state: what has to be taken from it for the constraints to hold, to first order; NULL: there are none */
 	const struct form **correction;
-	bool eliminated;            /* constraints stand in linear equations, with a force that holds them */
+	int misses;                 /* poles at -DECAY_OF_MISSES/h, of what misses eliminated constraints */
 	/* T and V beside constraints, where their sum stays; NULL: it may change */
 	const struct form *conserved[2];
 	mpq_ptr motion_end;         /* else when the motion from the initial values is there; NULL: it is known */

@@ -40,6 +40,50 @@ static int by_size(const void *left, const void *right)
 	return order ? order : mpfr_cmp(a->im, b->im);
 }
 
+/* Where what misses eliminated constraints decays */
+static mpq_t *pole_of_misses(const struct model *model)
+{
+	mpq_t *pole = rationals(1);
+	mpq_set_si(*pole, -DECAY_OF_MISSES, 1);
+	if (mpq_sgn(model->h) > 0)
+		mpq_div(*pole, *pole, model->h);
+	return pole;
+}
+
+int characteristic_of(const struct model *model, const struct resolvent *resolvent, mpq_t **B)
+{
+	int length = resolvent_determinant(resolvent)->length;
+	const mpq_t *pole = pole_of_misses(model);
+	RATIONAL carried = ZERO;
+	*B = rationals(length);
+	characteristic_polynomial(resolvent, *B);
+	for (int k = 0; k < model->equations.misses; k++, length--) {   /* by s - pole, which leaves 0 */
+		for (int i = length - 2; i > 0; i--) {
+			mpq_mul(carried, (*B)[i + 1], *pole);
+			mpq_add((*B)[i], (*B)[i], carried);
+		}
+		for (int i = 0; i + 1 < length; i++)
+			mpq_set((*B)[i], (*B)[i + 1]);
+	}
+	return length;
+}
+
+static int leave_misses_out(const struct model *model, int count, struct pole_report *report)
+{
+	const mpq_t *pole = pole_of_misses(model);
+	REAL off = WITH_BITS(REPORT_BITS);
+	int kept = 0;
+	for (int i = 0; i < count; i++) {
+		mpfr_sub_q(off, report[i].re, *pole, MPFR_RNDN);
+		const bool there = mpfr_zero_p(report[i].im) && mpfr_get_d(off, MPFR_RNDN) / mpq_get_d(*pole) < 1e-60 &&
+				   mpfr_get_d(off, MPFR_RNDN) / mpq_get_d(*pole) > -1e-60;
+		report[i].multiplicity -= there ? model->equations.misses : 0;
+		if (report[i].multiplicity > 0)
+			report[kept++] = report[i];
+	}
+	return kept;
+}
+
 int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report)
 {
 	struct spectrum *spectrum = resolvent_spectrum(resolvent);
@@ -54,6 +98,8 @@ int poles_of(const struct model *model, const struct resolvent *resolvent, struc
 		for (int i = 0; i < spectrum->poles[f]; i++)
 			add_report(&(*report)[count++], &spectrum->pole[f][i].at, spectrum->factor[f].multiplicity,
 				   !spectrum->pole[f][i].real);
+	if (model->equations.misses)
+		count = leave_misses_out(model, count, *report);
 	qsort(*report, (size_t)count, sizeof **report, by_size);
 	return count;
 }

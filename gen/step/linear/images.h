@@ -59,7 +59,9 @@ struct pole_report {                /* sorted by |p|, then by real part */
 	int multiplicity;
 	bool pair;                  /* stands for itself and its conjugate */
 };
-/* an error at the step where they are not told apart */
+/* Both without the poles of what misses eliminated constraints, which are of the step alone: B(s), its length; poles, an
+ * error at the step where they are not told apart */
+int characteristic_of(const struct model *model, const struct resolvent *resolvent, mpq_t **B);
 int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report);
 
 #endif

@@ -179,7 +179,7 @@ static enum step_form best_form(struct step *step)
 		return FORM_KICK_DRIFT_KICK;
 	if (model->params.tuning)
 		return FORM_DELTA;      /* good at any step that the target may be told */
-	const double largest = model->equations.eliminated ? DECAY_OF_MISSES : 1; /* those of misses change no more */
+	const double largest = model->equations.misses ? DECAY_OF_MISSES : 1; /* those of misses change no more */
 	return model->request.compensated || largest_pole_angle(step) <= largest + 1e-9 ? FORM_DELTA : FORM_DIRECT;
 }
 
