@@ -53,8 +53,8 @@ printf '%s\n' 'model held' 'coord x, y, v, w, z' 'mass 2 at x' 'mass 1 at y' 'sp
 	'damper 0.5 between x, ground' 'spring 50 between y, ground' 'mass 1 at v' 'mass 2 at w' "z' = -400*z" \
 	'damper 6 between v, ground' 'constraint rod: x = 2*y' "constraint belt: v' = w'" 'step 0.01' >held.spec
 "$plgen" --explain held.spec >log 2>&1
-grep -q 'B(s) = s^6 + 3620/9 s^5 ' log && [ "$(sed -n '/^    pole/,/^$/p' log | cut -c 1-41 | sed 's/ *$//' | tail -n +2)" = \
-	"    0  (2-fold)
+sed -n '/^    pole/,/^$/{s/^\(.\{41\}\).*/\1/;s/ *$//;p;}' log | tail -n +2 >poles
+grep -q 'B(s) = s^6 + 3620/9 s^5 ' log && [ "$(cat poles)" = "    0  (2-fold)
     -2
     -0.11111111 +- 7.0701948 i
     -400" ] && "$plgen" --explain=json held.spec | grep -q '"re": -400, "im": 0, "multiplicity": 1}'

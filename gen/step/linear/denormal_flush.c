@@ -2,7 +2,7 @@
 /* Numbers below the range of full precision take many times as long as others, and tell nothing: factors that are so
  * small leave the step, and states that have decayed that far become 0 (runtime/flush.h). */
 #include "forms.h"
-#include "images.h"
+#include "inner.h"
 #include "model/regions/regions.h"
 
 #include <float.h>

@@ -3,7 +3,7 @@
  * program makes with the constants as they are emitted, beside e^{p h} of the poles p. The map is made by running the
  * program on unit states in rationals, so that it is that of any form; its eigenvalues are enclosed like poles. */
 #include "forms.h"
-#include "images.h"
+#include "inner.h"
 
 enum { DRIFT_BITS = 256 };
 

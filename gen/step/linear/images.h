@@ -24,9 +24,6 @@ struct question {                   /* row . y(tau) */
 struct resolvent;                   /* adj P and B of one system */
 struct resolvent *resolvent_of(const struct linear *system);
 struct response *image_of(struct resolvent *r, const struct question *question);
-/* B(s) = det P, as many as its degree + 1 */
-void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
-const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
 
 /* ---- loads.c: loads, inputs and held terms as excitations of a step ---- */
 
@@ -59,8 +56,8 @@ struct pole_report {                /* sorted by |p|, then by real part */
 	int multiplicity;
 	bool pair;                  /* stands for itself and its conjugate */
 };
-/* Both without the poles of what misses eliminated constraints, which are of the step alone: B(s), its length; poles, an
- * error at the step where they are not told apart */
+/* Both without the poles of what misses eliminated constraints, which are of the step alone: B(s) = det P, its
+ * degree + 1; poles, an error at the step where they are not told apart */
 int characteristic_of(const struct model *model, const struct resolvent *resolvent, mpq_t **B);
 int poles_of(const struct model *model, const struct resolvent *resolvent, struct pole_report **report);
 

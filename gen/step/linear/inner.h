@@ -76,4 +76,10 @@ _Noreturn void undecided(struct place at, const char *what, bool isolated);
 void check_range(const struct model *model, const struct coefficient *c, int count, const struct started *list,
 		 const char *what);
 
+/* ---- resolvent.c ---- */
+
+/* B(s) = det P, as many as its degree + 1 */
+void characteristic_polynomial(const struct resolvent *r, mpq_t *coefficient);
+const struct poly *resolvent_determinant(const struct resolvent *r);           /* B(s) times the scales of the rows */
+
 #endif
