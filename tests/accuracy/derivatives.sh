@@ -552,6 +552,15 @@ if [ $made -eq 0 ]; then
 	result $? "$told of $grazing models built to graze are reported"
 fi
 
+# Steps without an event, in one word and in two
+printf '%s\n' 'model w' 'param k = 100, g = 0.01' 'coord x' 'init x = 0.005' \
+	"x'' + x'/2 + k*x + 9*k*max(x - g, 0) = cos(8*t)" 'step 0.01' >w.spec
+"$plrun" w.spec 2 --sensitivity k,g >one.csv 2>log &&
+	"$plrun" w.spec 2 --sensitivity k,g --accuracy compensated >two.csv 2>>log &&
+	paste -d , one.csv two.csv | awk -F, 'NR > 1 { for (i = 2; i <= NF/2; i++) { d = $i - $(i + NF/2)
+		bad += d*d > 1e-20*(1 + $i^2) } } END { exit NR < 200 || bad }' >>log
+result $? 'derivatives of steps in two words'
+
 # A stop that is just reached, at ten gaps within rounding of that: each is reported
 grazes=0
 for off in 0 1e-16 -1e-16 2e-16 -2e-16 1e-14 -1e-14 1e-12 -1e-12 1e-11; do
