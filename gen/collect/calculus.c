@@ -194,11 +194,12 @@ static const struct form **right_of_solution(struct differentiation *d, const st
 static void solve_curved(struct differentiation *d, const struct atom *a, struct linear_system *e)
 {
 	const int n = e->n, atoms = atoms_count(d->c->atoms);
-	const bool equation = d->c->equation;
+	const bool equation = d->c->equation, whole_time = d->c->whole_time;
 	struct differentiation inner = *d;
 	struct fixing *fixing = ARRAY(struct fixing, n);
 	const struct form **slope = ARRAY(const struct form *, n * n), **right = ARRAY(const struct form *, n);
 	d->c->equation = inner.held = true;
+	d->c->whole_time = a->written->whole_time;
 	inner.known = ARRAY(struct form *, inner.count = atoms);
 	inner.systems = 0;
 	inner.system = NULL;
@@ -213,6 +214,7 @@ static void solve_curved(struct differentiation *d, const struct atom *a, struct
 	for (int i = 0; i < n; i++)
 		right[i] = form_difference(NEW(struct form), form_at(there, derive(&inner, a->written->residual[i])));
 	d->c->equation = equation;
+	d->c->whole_time = whole_time;
 	e->M = slope;
 	e->f = right;
 }

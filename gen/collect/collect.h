@@ -232,6 +232,7 @@ struct written_system {
 	/* their derivatives by these, where they are not linear in them: M and f are of Newton's last step; or NULL */
 	const struct form *const *slope;
 	const struct form **found;  /* then what is not linear in each, of their solution */
+	bool whole_time;            /* conditions on t are open in them */
 	int kinks;                  /* then of these as they are written and at iterates of Newton's method */
 	const struct kink *kink;
 };

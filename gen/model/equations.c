@@ -484,10 +484,10 @@ void collect_full(struct building *b)
 	b->collector.whole_time = true;
 	forget_lets(b->spec);
 	collect_equations(b, b->full);
-	b->collector.whole_time = false;
 	b->collector.keep = (unsigned)keep;
 	if (!diagnostics_errors())
-		add_elements(b, b->full);
+		add_elements(b, b->full);       /* what is solved for goes on through changes of formula, too */
+	b->collector.whole_time = false;
 	for (struct symbol *s = b->spec->first; s && !b->collector.fixings; s = s->next)
 		if (s->kind == SYMBOL_LET && s->made.progress == COLLECTED &&
 		    s->made.value->rows * s->made.value->columns == 1)

@@ -348,6 +348,7 @@ struct linear_system newton_system(struct building *b, const struct node *node, 
 		slope[i] = form_sum(linear->M[i], terms->slope[i], false);
 	*written = *linear->written;
 	written->slope = slope;
+	written->whole_time = c->whole_time;
 	written->found = ARRAY(const struct form *, n);
 	const struct form **kink = NULL;
 	const int kinks = find_kinks(b, terms, &kink);
