@@ -106,7 +106,7 @@ static struct demands demands_of(const struct building *b)
 			const struct form *form = e < 0 ? first[s].residual[i].form : first[s].element[e];
 			same = same && same_in_states(form, e < 0 ? first->residual[i].form : first->element[e]);
 			atoms = atoms || holds_atom(form);
-			piecewise = piecewise && is_piecewise_form(form);
+			piecewise = piecewise && is_piecewise_form(form) && !atom_of_highest(form);
 		}
 	}
 	return (struct demands){ same && !atoms, piecewise && (same || atoms) };

@@ -37,8 +37,7 @@ static int row_of(const struct solving *w, int coord)
 	return coord < w->coords ? w->b->owner[coord] : coord;
 }
 
-/* The first atom in which a highest derivative stands; NULL: there is none */
-static const struct atom *atom_of_highest(const struct form *form)
+const struct atom *atom_of_highest(const struct form *form)
 {
 	for (int i = 0; i < form->terms; i++)
 		if (form->term[i].basis.atom && form->term[i].basis.atom->highest)

@@ -6,11 +6,14 @@
 #include <stdbool.h>
 #include <gmp.h>
 
+struct atom;
 struct building;
 struct form;
 struct linear_system;
 struct segment_equations;
 
+/* The first atom in which a highest derivative stands; NULL: there is none */
+const struct atom *atom_of_highest(const struct form *form);
 /* Whether the highest derivative of a coordinate stands in it, or inside of an atom */
 bool has_highest(const struct building *b, const struct form *form, int coord);
 /* Residuals q'' - (M^-1 f) in the place of those that M(q) couples; what is not linear in q'' is an error there */
