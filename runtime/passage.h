@@ -390,9 +390,9 @@ static int PL(pass)(PL_TYPE *s, const real start[], const real slope[], const re
             return PL_TOO_MANY_EVENTS;
         }
         if (theta < 0 && !(till < end && till < 1)) {
-            if (again) { /* shorter than what would have ended it, and than what says how the next goes on */
+            if (again) { /* shorter than what would have ended it; from far too short a part nothing goes on */
                 s->stop = PL_AT_ERROR;
-                s->ready = 0;
+                s->ready = s->ready && s->want < (real)0x1p26 * s->size;
             }
             s->contact.last.expression = -1;
 #if PL_CONTACTS
