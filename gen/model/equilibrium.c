@@ -392,27 +392,71 @@ static void find_free(struct linearising *l, struct equilibrium *found)
 	}
 }
 
-void find_equilibria(struct linearising *l)
+/* Whether each coordinate is between those of both, where given, but for rounding */
+static bool is_between(const struct linearising *l, const mpq_t *one, const mpq_t *other)
+{
+	bool between = true;
+	for (int i = 0; i < l->n && one; i++) {
+		const double x = mpq_get_d(l->state[i]), a = mpq_get_d(one[i]), b = mpq_get_d(other[i]);
+		between = between && x >= fmin(a, b) - 1e-9 && x <= fmax(a, b) + 1e-9;
+	}
+	return between;
+}
+
+/* From where the state is to the nearest one, which is kept where it is new, and between two others where given */
+static void look_from_here(struct linearising *l, const mpq_t *one, const mpq_t *other)
 {
 	struct equations *e = &l->b->model->equations;
-	for (int most = l->n < 5 ? 32 : 12; e->starts == 0 || (e->starts < most && memory_used() < 0.3); e->starts++) {
-		bool known = false;
-		start_at(l, e->starts);
-		l->fall = 1e-4;
-		find_residuals(l);
-		l->scale = fmax(l->scale, size_of_residuals(l));
-		if (unheard_refusal_of(find_one, l))
-			continue;
-		for (int i = 0; i < e->equilibria && !known; i++)
-			known = is_known(l, &e->equilibrium[i]);
-		if (known)
-			continue;
-		struct equilibrium *found = MORE(e->equilibrium, e->equilibria);
-		*found = (struct equilibrium){ .state = rationals((size_t)l->n) };
-		for (int i = 0; i < l->n; i++)
-			mpq_set(found->state[i], l->state[i]);
-		find_free(l, found);
+	bool known = false;
+	l->fall = 1e-4;
+	find_residuals(l);
+	l->scale = fmax(l->scale, size_of_residuals(l));
+	if (unheard_refusal_of(find_one, l) || !is_between(l, one, other))
+		return;
+	for (int i = 0; i < e->equilibria && !known; i++)
+		known = is_known(l, &e->equilibrium[i]);
+	if (known)
+		return;
+	struct equilibrium *found = MORE(e->equilibrium, e->equilibria);
+	*found = (struct equilibrium){ .state = rationals((size_t)l->n) };
+	for (int i = 0; i < l->n; i++)
+		mpq_set(found->state[i], l->state[i]);
+	find_free(l, found);
+}
+
+/* A part of the way from one to the other: what is stable has an unstable one between, however near they are */
+static void start_between(struct linearising *l, int one, int other, double part)
+{
+	const struct equilibrium *found = l->b->model->equations.equilibrium;
+	RATIONAL way = ZERO, weight = ZERO;
+	mpq_set_d(weight, part);
+	for (int i = 0; i < l->n; i++) {
+		mpq_sub(way, found[other].state[i], found[one].state[i]);
+		mpq_mul(way, way, weight);
+		mpq_add(l->state[i], found[one].state[i], way);
 	}
+	for (int i = l->n; i < l->rows; i++)
+		mpq_set_ui(unknown_of(l, i), 0, 1);
+}
+
+void find_equilibria(struct linearising *l)
+{
+	static const double part[] = { 0.5, 0.3125, 0.6875 };
+	struct equations *e = &l->b->model->equations;
+	int between = 0;
+	for (int most = l->n < 5 ? 32 : 12; e->starts == 0 || (e->starts < most && memory_used() < 0.3); e->starts++) {
+		start_at(l, e->starts);
+		look_from_here(l, NULL, NULL);
+	}
+	for (int i = 1; i < e->equilibria && l->n < 5; i++)
+		for (int k = 0; k < 3 * i && between < 24 && memory_used() < 0.3; k++) {
+			const struct equilibrium one = e->equilibrium[k / 3], other = e->equilibrium[i];
+			if (one.directions + other.directions > 0)
+				continue;       /* of a row of equilibria any is between two of its others */
+			between++;
+			start_between(l, k / 3, i, part[k % 3]);
+			look_from_here(l, one.state, other.state);
+		}
 }
 
 /* ---- symmetry ---- */

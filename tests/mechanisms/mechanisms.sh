@@ -193,6 +193,13 @@ test "$(sed -n 's/^[0-9]*: a = \(.*\)/\1/p' log | sort -g)" = "-2.094395102; mar
 2.094395102; marginal
 3.141592654; unstable"
 result $? 'all equilibria of a potential with two wells'
+# A flat arch: roots of 1000 (s - sqrt(1.0025)) y/s + 0.01, s = sqrt(1 + y^2), by mpmath; far starts meet the outer ones
+printf "model arch\ncoord y\nenergy T = y'^2/2, V = 500*(sqrt(1 + y^2) - sqrt(1.0025))^2 + y/100\nstep 1\n" >arch
+"$PLGEN" --equilibrium arch >log 2>&1
+test "$(sed -n 's/^[0-9]*: y = \(.*\); \(.*\)/\1 \2/p' log | sort -g)" = "-0.05361061259 marginal
+0.008228236685 unstable
+0.04536737279 marginal"
+result $? 'the state of an arch between two'
 "$PLGEN" --explain=json "$root/models/swing_arm.spec" 2>log | grep -A 3 drawing >>log
 grep -qF '"what": "wheel", "at": ["across", "wheel"], "radius": "r"}]' log && grep -qF '"from": ["0", "z"], "to"' log
 result $? 'what is drawn, for a program'
