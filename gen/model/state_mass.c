@@ -185,12 +185,12 @@ static void find_blocks(struct solving *w)
 	w->block = ARRAY(int, 2 * w->n);
 	for (int i = 0; i < 2 * w->n; i++)
 		w->block[i] = i;
-	for (int i = 0; i < w->n; i++) {
-		join_nodes(w->block, row_of(w, i), w->n + i); /* also where it has no mass, as -x = 0 may hold it */
+	for (int i = 0; i < w->n; i++)
 		for (int j = 0; j < w->n; j++)
-			if (w->M[i * w->n + j]->terms)
+			if (w->M[i * w->n + j]->terms) {
 				join_nodes(w->block, i, w->n + j);
-	}
+				join_nodes(w->block, row_of(w, j), w->n + j); /* without a mass, too: held by -x = 0 */
+			}
 }
 
 /* Without constraints */
