@@ -2,13 +2,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with CASE,
 # MERGE=1 or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of COUNT
-# seeds from FIRST on, STRIDE apart, as TAP: a line for each spec of the corpus, and for each block of seeds. PLGEN is
-# built with sanitizers; it makes every third of them, and the plain one, beside it without `_sanitized`, the others.
+# seeds from FIRST on, STRIDE apart, as TAP: a line for each spec of the corpus, and for each block of seeds.
 # What is emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1
 # all have sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only
 # with a message of refusals.list.
 set -u
-sanitized=$(realpath "$1")
+plgen=$(realpath "$1")
 grammar=$(realpath "$2")
 folder=$(dirname "$(realpath "$3")")
 source=$(realpath "$4")
@@ -25,15 +24,6 @@ merging || every=3
 block=25
 made=0
 refused=0
-
-# add ID SPEC: to the batch, by one of the generators
-added=0
-add() {
-	added=$((added + 1))
-	plgen=$sanitized
-	merging || [ $((added % every)) -eq 0 ] || plgen=${sanitized%_sanitized}
-	batch_add "$1" "$2"
-}
 
 # keep_it ID NAME SPEC: what went wrong, into the log; the spec, where KEEP wants it
 keep_it() {
@@ -57,7 +47,7 @@ run_all() {
 	eighths=yes
 	batch_new
 	for id in $late; do
-		add "$id" "${id#c_}.spec"
+		batch_add "$id" "${id#c_}.spec"
 	done
 	eighths=
 	batch_build
@@ -74,7 +64,7 @@ if [ -n "$corpus" ]; then
 	merging || [ -n "${CASE:-}" ] || { awk 'NR % 2' names >half && mv half names; }
 	names=$(cat names)
 	for name in $names; do
-		add "c_$name" "$name.spec"
+		batch_add "c_$name" "$name.spec"
 	done
 	batch_build
 	run_all "$(sed 's/^/c_/' names)"
@@ -107,7 +97,7 @@ while [ "$seed" -lt "$past" ]; do
 	while [ "$seed" -lt "$end" ]; do
 		id=s$seed
 		"$grammar" "$seed" "$id.spec" "$id.again.c" || exit 99
-		add "$id" "$id.spec"
+		batch_add "$id" "$id.spec"
 		case $said in
 			made) made=$((made + 1)) ;;
 			refused) refused=$((refused + 1)) ;;
