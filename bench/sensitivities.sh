@@ -4,7 +4,7 @@
 # the largest: thousands of instructions by valgrind's callgrind, of plgen's taylor by tolerance and of CVODES, forwards
 # and backwards. The truth is plgen's at 1e-15; how far CVODES at its smallest error agrees with it is printed.
 set -e
-build=$1
+build=$(realpath "$1")
 shift
 [ $# -gt 0 ] || set -- duffing pendulum springs mechanism
 work=$(mktemp -d)
