@@ -372,13 +372,13 @@ static bool take_peak(struct parser *p)
 }
 
 /* The note of `output x, 2*x` gives the expression a name. */
-static _Noreturn void unnamed_output(const struct parser *p)
+static _Noreturn void unnamed_output(const struct parser *p, const struct token *first)
 {
-	const char *at = p->lexer.source->text + p->token.at.offset;
+	const char *at = p->lexer.source->text + first->at.offset;
 	size_t length = strcspn(at, ",(#\r\n");
-	if (p->token.kind == TOKEN_END)
+	if (first->kind == TOKEN_END)
 		unexpected(p, "the name of an output");
-	error(p->token.at, at[length] == '(' ? "output NAME = ..." : format("output NAME = %.*s", (int)length, at),
+	error(first->at, at[length] == '(' ? "output NAME = ..." : format("output NAME = %.*s", (int)length, at),
 	      "an output that is an expression needs a name");
 }
 
@@ -388,8 +388,10 @@ void read_output(struct parser *p)
 	p->output = true;
 	do {
 		if (p->token.kind != TOKEN_NAME)
-			unnamed_output(p);
+			unnamed_output(p, &p->token);
 		struct token name = take(p);
+		if (p->token.kind == TOKEN_OPERATOR && strchr("+-*/^", p->token.op[0]))
+			unnamed_output(p, &name);
 		if (!is_op(p, "=")) {
 			read_plain_output(p, name);
 			continue;
