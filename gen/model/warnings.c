@@ -473,6 +473,28 @@ static void check_guards(struct building *b)
 			}
 }
 
+/* Where T jumps, d/dt dT/dq' has an impulse, which keeps dT/dq'; the equations behind it go on with q'. */
+static void check_kinetic_energy(const struct building *b)
+{
+	const struct segment_equations *of = b->segment_equations;
+	const struct energy *energy = b->spec->lagrange.energy;
+	for (int s = 1; s < b->model->system.segments && of[0].energy[0]; s++) {
+		const struct form *jump = form_difference(of[s].energy[0], of[s - 1].energy[0]);
+		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+		bool certain = jump->terms > 0;
+		for (const struct form_term **term = terms_within(jump, seen); *term; term++)
+			certain = certain && (*term)->basis.kind != BASIS_FORCING;
+		if (!certain)
+			continue;
+		while (energy->kind != 'T')
+			energy++;
+		say_warning(energy->at, "an impact by `when` gives q' another value",
+			    "T jumps at t = %s: velocities go on there, and dT/dq' does not",
+			    readable_text(b->model->system.change[s - 1]));
+		return;
+	}
+}
+
 struct passed { struct building *b; struct point *start; const struct impact *impact; };
 
 static void check_start(void *context)
@@ -529,6 +551,7 @@ void warn(struct building *b)
 	check_friction(model);
 	check_guards(b);
 	check_starts(b);
+	check_kinetic_energy(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	/* in normal modes a step's spectral radius tells more */
 	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||
