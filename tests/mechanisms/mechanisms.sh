@@ -64,7 +64,8 @@ for spec in "$cases"/*.spec; do
 		check "$name" "$name, $scheme" "$within" --scheme "$scheme"
 	done 3<schemes
 done
-# The Jacobian of the accelerations, M^-1 K of the linear equations at a point, against their differences
+# The Jacobian of the accelerations, M^-1 K of the linear equations at a point and K of an operator there, against their
+# differences
 cat >slope.spec <<'SPEC'
 model slope
 param p = 1
@@ -82,10 +83,13 @@ accelerations() {
 : >log
 "$PLGEN" --at q1=1,q2=0.5 --explain=json slope.spec 2>>log | tr -d ' \n[]' |
 	sed 's/.*"M":\(.*\)"C":.*"K":\(.*\)"B".*/\1\2/; s/,/ /g' >K
-echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cat K)" | awk '
+{ cat slope.spec; echo 'scheme etdrk4'; echo 'operator at q1 = 1, q2 = 0.5'; } >operator.spec
+"$PLGEN" --explain=json operator.spec 2>>log | tr -d ' \n[]' |
+	sed 's/.*"operators":.*"K":\([^"]*\),"poles".*/\1/; s/,/ /g' >operator
+echo "$(accelerations 1.00001) $(accelerations 0.99999) $(cut -d ' ' -f 1-8 K) $(cat operator)" | awk '
 	{ a = -($1 - $3)/2e-5; b = -($2 - $4)/2e-5
-	  print "differences " a " " b ", M and K " $5 " " $6 " " $7 " " $8 ", " $9 " " $11
-	  near = ($5*a + $6*b - $9)^2 + ($7*a + $8*b - $11)^2 < 1e-14
+	  print "differences " a " " b ", M and K " $5 " " $6 " " $7 " " $8 ", " $9 " " $11 ", operator " $13 " " $15
+	  near = ($5*a + $6*b - $9)^2 + ($7*a + $8*b - $11)^2 < 1e-14 && (a - $13)^2 + (b - $15)^2 < 1e-14
 	  exit !near }' >>log
 result $? 'the Jacobian of accelerations is that of their differences'
 # Rounding of a series is of one sign. By Jacobi's sn in 30 digits: x of the pendulum at t = 1000.

@@ -42,7 +42,6 @@ static const struct tuned_equations **list_equations(const struct emitter *e)
 	return list;
 }
 
-
 /* Of each column what its entries are the slopes of, in rows that count the entries of all columns */
 static struct tuned_equations *slopes_of_tables(const struct emitter *e, const struct guards *g)
 {

@@ -2,6 +2,7 @@
 /* Natural frequencies and damping ratios: the poles as a reader wants to see them, in a fixed order. */
 #include "inner.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 enum { REPORT_BITS = 256 };
@@ -50,21 +51,30 @@ static mpq_t *pole_of_misses(const struct model *model)
 	return pole;
 }
 
+/* Divides B by s - pole where that leaves 0 */
+static bool divide_by_pole(int length, mpq_t *B, mpq_srcptr pole)
+{
+	RATIONAL carried = ZERO;
+	mpq_t *quotient = rationals(length);
+	for (int i = length - 1; i >= 0; i--) {         /* that of 0 is what is left */
+		mpq_mul(carried, i + 1 < length ? quotient[i + 1] : carried, pole);
+		mpq_add(quotient[i], B[i], carried);
+	}
+	if (mpq_sgn(quotient[0]) != 0)
+		return false;
+	for (int i = 0; i + 1 < length; i++)
+		mpq_set(B[i], quotient[i + 1]);
+	return true;
+}
+
 int characteristic_of(const struct model *model, const struct resolvent *resolvent, mpq_t **B)
 {
 	int length = resolvent_determinant(resolvent)->length;
 	const mpq_t *pole = pole_of_misses(model);
-	RATIONAL carried = ZERO;
 	*B = rationals(length);
 	characteristic_polynomial(resolvent, *B);
-	for (int k = 0; k < model->equations.misses; k++, length--) {   /* by s - pole, which leaves 0 */
-		for (int i = length - 2; i > 0; i--) {
-			mpq_mul(carried, (*B)[i + 1], *pole);
-			mpq_add((*B)[i], (*B)[i], carried);
-		}
-		for (int i = 0; i + 1 < length; i++)
-			mpq_set((*B)[i], (*B)[i + 1]);
-	}
+	for (int k = 0; k < model->equations.misses && divide_by_pole(length, *B, *pole); k++)
+		length--;               /* of some modes alone it has none of them */
 	return length;
 }
 
@@ -75,9 +85,8 @@ static int leave_misses_out(const struct model *model, int count, struct pole_re
 	int kept = 0;
 	for (int i = 0; i < count; i++) {
 		mpfr_sub_q(off, report[i].re, *pole, MPFR_RNDN);
-		const bool there = mpfr_zero_p(report[i].im) && mpfr_get_d(off, MPFR_RNDN) / mpq_get_d(*pole) < 1e-60 &&
-				   mpfr_get_d(off, MPFR_RNDN) / mpq_get_d(*pole) > -1e-60;
-		report[i].multiplicity -= there ? model->equations.misses : 0;
+		if (mpfr_zero_p(report[i].im) && fabs(mpfr_get_d(off, MPFR_RNDN) / mpq_get_d(*pole)) < 1e-60)
+			report[i].multiplicity -= model->equations.misses;
 		if (report[i].multiplicity > 0)
 			report[kept++] = report[i];
 	}
