@@ -146,9 +146,10 @@ static bool may_eliminate(const struct building *b)
 	const struct spec *spec = b->spec;
 	bool may = spec->count.multipliers > 0 && b->model->scheme == SCHEME_EXACT && demands_of(b).linear &&
 		   b->model->contacts.impacts == 0 && spec->whens == 0 && spec->tuned.count == 0 &&
-		   spec->sensitivities == 0 && !request->sensitivity && !request->passed_over &&
-		   !request->loads_left && !request->linear.where && !spec->operators.given &&
-		   !spec->modes.at.source && !request->modes && !request->reduce && reads_plain_multipliers(b);
+		   spec->sensitivities == 0 && !request->sensitivity && !request->external &&
+		   !request->passed_over && !request->loads_left && !request->linear.where &&
+		   !spec->operators.given && !spec->modes.at.source && !request->modes && !request->reduce &&
+		   reads_plain_multipliers(b);
 	for (int i = 0; i < spec->count.multipliers && may; i++)
 		may = is_plain_constraint(b, i);
 	return may;

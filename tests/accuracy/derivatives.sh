@@ -484,7 +484,15 @@ phi'' + 9.81*sin(phi) + 0.2*x' = 0
 step 0.01
 END
 sed -e s/swing/driven/ -e 's/^coord.*/&\ninput u/' -e 's/= 0$/= u/' swing.spec >driven.spec
-for name in cart swing driven; do
+cat >tied.spec <<'END'
+model tied
+coord x, y
+2*x'' + 0.5*x' + 50*x = cos(3*t)
+y'' + 20*y = 0
+constraint rod: x = 2*y
+step 0.01
+END
+for name in cart swing driven tied; do
 	"$PLGEN" --external casadi "$name.spec" -o "$name.c" 2>log
 	$run_cc -I"$root/runtime" "-DM(x)=$name##x" "-DJ(x)=jac_$name##x" external.c "$name.c" "$archive" -lm -o q \
 		>>log 2>&1 && ./q >>log
