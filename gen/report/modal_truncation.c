@@ -69,6 +69,13 @@ static double ratio_of(const struct mode *mode)
 	return size == 0 ? 0 : -mode->re / size;
 }
 
+/* Where what misses eliminated constraints decays */
+static bool is_of_misses(const struct model *model, const struct mode *mode)
+{
+	return model->equations.misses && mode->im == 0 &&
+	       fabs(mode->re * mpq_get_d(model->h) + DECAY_OF_MISSES) < 1e-9;
+}
+
 /* Each mode, and what it gives */
 void text_modal_truncation(FILE *to, const struct model *model)
 {
@@ -81,7 +88,8 @@ void text_modal_truncation(FILE *to, const struct model *model)
 		const int last = mode->number + mode->weight - 1;
 		const char *number = last > mode->number ? format("%d-%d", mode->number, last)
 							 : format("%d", mode->number);
-		const char *share = !mode->seen ? "not seen" : mode->rigid ? "rigid"
+		const char *share = is_of_misses(model, mode) ? "none: it is of the constraints"
+				    : !mode->seen ? "not seen" : mode->rigid ? "rigid"
 				    : isfinite(mode->share) ? format("%.3g", mode->share) : "no bound";
 		fprintf(to, "    %-9s %-16.8g %-14.8g %-10s %s\n", number,
 			hypot(mode->re, mode->im) / 6.283185307179586, ratio_of(mode), s->kept[i] ? "kept" : "dropped",
