@@ -82,19 +82,12 @@ static struct spec *parsed(const struct work *w, const struct source *source)
 	return spec;
 }
 
-/* The spec with the statement of --tunable behind it, since other values of params are found by reading it again;
- * NULL: it was said what is wrong with the list, or the spec */
+/* Other values of params are found by reading the spec again, and its list of --tunable with it. */
 static const struct source *with_tunables(const struct work *w, const struct source *source)
 {
-	if (!w->options.tunable)
-		return source;
-	struct spec *spec = parse_spec(source);
-	if (diagnostics_errors() || !parse_tunables(spec, source_argument(w->options.tunable)))
-		return NULL;
 	struct source *more = NEW(struct source);
 	*more = *source;
-	more->text = format("%s\ntunable %s\n", source->text, w->options.tunable);
-	more->length = strlen(more->text);
+	more->tunables = w->options.tunable ? source_argument(w->options.tunable) : NULL;
 	return more;
 }
 
@@ -182,8 +175,6 @@ static const struct source *source_of(struct work *w)
 	if (!source || !define(w))
 		return NULL;
 	source = with_tunables(w, source);
-	if (!source)
-		return NULL;
 	request->linear.where = place_of_views(&w->options);
 	if (!request->linear.where)
 		return source;

@@ -202,6 +202,7 @@ struct source {
 	size_t length;
 	int order;                  /* in which they were opened: the spec first */
 	bool repeats;               /* a part, in the model as often as it is used: of a place the first is reported */
+	const struct source *tunables;  /* the list of --tunable, which is read behind this text */
 };
 struct place {
 	const struct source *source;

@@ -414,7 +414,10 @@ static void cannot_read(const struct source *source, struct place at, const char
 
 struct source *source_read(const char *path, struct place at)
 {
+	static struct source *input;            /* standard input: many models may be made of it, and it is read once */
 	bool standard = !at.source && strcmp(path, "-") == 0;
+	if (standard && input)
+		return input;
 	const char *slash = strrchr(path, '/');
 	struct source *source = source_new(standard ? "<stdin>" : path,
 					   standard ? "<stdin>"
@@ -443,7 +446,11 @@ struct source *source_read(const char *path, struct place at)
 	}
 	source->text = text;
 	source->length = length;
-	return check_text(source) ? source : NULL;
+	if (!check_text(source))
+		return NULL;
+	if (standard)
+		input = source;
+	return source;
 }
 
 struct place place_end(const struct source *source)

@@ -292,6 +292,8 @@ struct spec *parse_spec(const struct source *source)
 {
 	open_assembly(source);
 	struct spec *spec = parse_whole(source, &reader);
+	if (source->tunables)
+		parse_tunables(spec, source->tunables);
 	if (spec->assembly.parts && !spec->lagrange.energies && !spec->lagrange.totals && !diagnostics_errors())
 		leave_unobservable(spec);       /* energies tie together what stands in them */
 	fill_totals(spec);
