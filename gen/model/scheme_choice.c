@@ -421,6 +421,13 @@ static void keep_loads(struct building *b, const char *why)
 	b->request = request;
 }
 
+/* Before contacts ask for events: a scheme that was asked for may project nothing. */
+static void refuse_constraints(void *context)
+{
+	const struct building *b = context;
+	refuse(CAN_CONSTRAINTS, b->model, b->segment_equations->constraint[0].statement->at);
+}
+
 /* Exact where there is no remainder and no scheme was asked for; the equations for all time where something is. */
 static bool choose_scheme(struct building *b)
 {
@@ -429,6 +436,9 @@ static bool choose_scheme(struct building *b)
 	const bool constrained = b->spec->count.multipliers > 0 && !b->eliminates;
 	if (model->contacts.impacts > 0 || holds_friction(b))
 		keep_loads(b, "what goes from event to event has no quadrature");
+	if (constrained && (model->request.at.scheme.source || b->request->solution) &&
+	    !statement_guard(refuse_constraints, b))
+		return false;
 	if (model->contacts.impacts > 0 && !statement_guard(resolve_impacts, b))
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))

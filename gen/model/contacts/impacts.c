@@ -154,6 +154,7 @@ void collect_impacts(struct building *b, struct segment_equations *segment_equat
 		struct impact_law *impact_law = NEW(struct impact_law);
 		if (statement_guard(collect_impact, &(struct collecting){ b, &spec->when[i], impact_law }))
 			segment_equations->impact_law[i] = impact_law;
+		b->collector.constant_only = false;     /* where what had to be constant was not */
 	}
 }
 
