@@ -491,6 +491,7 @@ static void find_and_print_campbell(void *context)
 	struct campbell c = { .build = model_with, .context = &many };
 	find_campbell(&c, o->campbell.sweep, o->campbell.orders, o->campbell.whirl);
 	w->spec = many.now.given ? (struct spec *)many.now.given : many.now.spec;
+	w->model = many.now.model;
 	print_campbell(w->text->to, &c, &o->look, picture_of_file(o->output));
 }
 

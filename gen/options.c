@@ -407,12 +407,14 @@ static const char *nearest_option(const char *word)
 	for (size_t i = 0; i < sizeof habit / sizeof *habit; i++)
 		if (strcmp(word, habit[i].word) == 0)
 			return habit[i].option ? format("--%s", habit[i].option) : "-o";
+	int long_ones = 0;                      /* what is one letter is like any short word */
 	for (int i = 0; i < ROWS; i++) {
-		known[i] = rows[i].name;
-		if (strcmp(word, known[i]) == 0)
+		if (strcmp(word, rows[i].name) == 0)
 			return NULL;            /* it is there, and takes no value */
+		if (rows[i].name[1])
+			known[long_ones++] = rows[i].name;
 	}
-	const char *nearest = nearest_name(word, ROWS, known);
+	const char *nearest = nearest_name(word, long_ones, known);
 	return nearest ? format("--%s", nearest) : NULL;
 }
 

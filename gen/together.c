@@ -44,7 +44,7 @@ static void find_header(struct options *options)
 		wrong_usage(format("-o of --plot takes FILE.svg, FILE.png or FILE.pdf%s, found '%s'",
 				   options->campbell.wanted ? ", of campbell also FILE.csv and FILE.json" : "",
 				   options->output));
-	if (!options->output || options->print != PRINT_C)
+	if (!options->output || options->print != PRINT_C || options->equilibrium)
 		return;
 	if (length < 3 || strcmp(options->output + length - 2, ".c") != 0)
 		wrong_usage(format("-o takes the name of a C file, FILE.c, found '%s'", options->output));
@@ -78,7 +78,8 @@ static void check_a2l(const struct options *options)
 static void check_equilibrium(const struct options *o)
 {
 	const enum print print = o->print;
-	const char *other = o->at ? "--at" : o->output ? "-o" : o->fmu.path ? "--fmu" : o->bundle ? "--bundle"
+	const char *other = o->at ? "--at" : o->fmu.path ? "--fmu" : o->page ? "--page" : o->a2l ? "--a2l"
+			    : o->bundle ? "--bundle"
 			    : print != PRINT_C && print != PRINT_JSON ? option_of_print(print) : NULL;
 	if (o->equilibrium && other)
 		wrong_usage(format("--equilibrium does not go with %s", other));
@@ -190,6 +191,9 @@ static void check_names(const struct options *options)
 			       options->a2l, options->params, options->page };
 	enum { PATHS = sizeof path / sizeof *path };
 	check_spelling(options, path, PATHS);
+	for (int i = 1; i < PATHS; i++)
+		if (path[i] && !*path[i])
+			wrong_usage("the name of a file is empty");
 	for (int i = 0; i < PATHS; i++)
 		for (int j = i + 1; j < PATHS; j++)
 			if (path[i] && path[j] && same_file(path[i], path[j]))
