@@ -41,17 +41,6 @@ static void set_value(struct symbol *symbol, struct place at, mpq_srcptr value)
 	mpq_set(symbol->value->number, value);
 }
 
-static void set_values(struct building *b)
-{
-	const struct again *again = &b->request->again;
-	if (again->varied)
-		set_value(spec_find(b->spec, again->varied), b->spec->name_at, again->value);
-	if (again->tunable)
-		derive_params(b->spec);
-	for (int i = 0; again->tunable && i < b->spec->tuned.count; i++)
-		set_value(b->spec->tuned.tunable[i].symbol, b->spec->tuned.tunable[i].at, again->tunable[i]);
-}
-
 /* Whether a symbol of the statement of `first`, its first one, is broken; those of a statement stand together */
 static bool statement_failed(const struct symbol *first)
 {
@@ -533,6 +522,19 @@ static void take_derivatives(void *context)
 	add_derivatives(b->spec, again->derivatives_from, again->derivatives, again->jumps, again->remainder);
 }
 
+/* Params that are varied; of tunable ones behind derivatives, which go through what is made of them. */
+static void set_values(struct building *b)
+{
+	const struct again *again = &b->request->again;
+	if (again->varied)
+		set_value(spec_find(b->spec, again->varied), b->spec->name_at, again->value);
+	statement_guard(take_derivatives, b);
+	if (again->tunable)
+		derive_params(b->spec);
+	for (int i = 0; again->tunable && i < b->spec->tuned.count; i++)
+		set_value(b->spec->tuned.tunable[i].symbol, b->spec->tuned.tunable[i].at, again->tunable[i]);
+}
+
 struct model *model_build(struct spec *spec, const struct request *request)
 {
 	struct building b = { .spec = spec, .model = NEW(struct model), .request = request };
@@ -543,7 +545,6 @@ struct model *model_build(struct spec *spec, const struct request *request)
 	for (int i = 0; i < request->definitions.count; i++)
 		define_override(&b, &request->definitions.definition[i]);
 	set_values(&b);
-	statement_guard(take_derivatives, &b);
 	if (!request->again.relative && (request->prefix || (model->name && *model->name)))
 		check_prefix(&b);
 	name_coordinates(&b);

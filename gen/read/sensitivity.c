@@ -47,9 +47,14 @@ static bool reads_names(const struct node *node)
 /* Params that do not follow from others */
 static void add_all(struct spec *spec, struct place at)
 {
-	for (struct symbol *s = spec->first; s; s = s->next)
-		if (s->kind == SYMBOL_PARAM && !s->broken && !reads_names(s->value))
+	bool any = false;
+	for (struct symbol *s = spec->first; s; s = s->next) {
+		any |= s->kind == SYMBOL_PARAM;
+		if (s->kind == SYMBOL_PARAM && !s->broken && (s->tuning.number || !reads_names(s->value)))
 			add_sensitivity(spec, (struct sensitivity){ at, s, 0, 0, s->name });
+	}
+	if (!any)
+		error(at, "it lists those that stand before it", "there is no param here");
 }
 
 static void take_sensitivity(struct parser *p)

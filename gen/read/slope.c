@@ -99,11 +99,17 @@ static struct node *slope_by_velocity(struct node *node, const struct slope *by)
 
 /* ---- by a param ---- */
 
+/* The program sets a tunable param, which then follows no other. */
+static bool stands_alone(const struct symbol *symbol)
+{
+	return symbol->tuning.number && !symbol->tuning.derived;
+}
+
 bool follows_param(const struct node *node, const struct symbol *param)
 {
 	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
 	bool found = s && s == param;
-	if (s && !found && s->value)
+	if (s && !found && s->value && !stands_alone(s))
 		found = follows_param(s->value, param);
 	for (int i = 0; i < node->children && !found; i++)
 		found = follows_param(node->child[i], param);
@@ -167,6 +173,8 @@ static struct node *varied_name(struct node *node, const struct slope *by)
 	struct node **known = &by->known[symbol->number];
 	if (symbol == by->param)
 		return number(node, 1);
+	if (stands_alone(symbol))
+		return number(node, 0);
 	if (symbol->value) {
 		*known = *known ? *known : derivative(symbol->value, by);
 		return *known;

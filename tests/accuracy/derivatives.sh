@@ -362,13 +362,13 @@ int main(void)
 END
 cat >tuned.spec <<'END'
 model tuned
-param m = 2, c = 0.1, k = 1, w = 1.4
+param m = 2, c = 0.1, k = 1, w = 1.4, q = k, r = 2*k
 coord x, y
 init x = 1
-tunable k, m, w
-sensitivity k, m, w, c
+tunable k, m, w, q
+sensitivity k, m, w, q, c
 m*x'' + c*x' + k*(x - y) = cos(w*t)
-y'' + c*y' + k*(2*y - x) = 0
+y'' + c*y' + r*y - sqrt(q*q)*x = 0
 output x, e = x - 2*y
 step 0.05
 END
@@ -378,6 +378,15 @@ for name in tuned tuned_series; do
 		$run_cc -I"$root/runtime" tuned.c r.c "$archive" -lm -o r >>log 2>&1 && ./r >>log
 	result $? "$name: at the values that it was given"
 done
+
+# ---- initial values beside a constraint: what init names stays, the rest follows, in each column ----
+
+printf '%s\n' 'model rod' 'param l = 1' 'coord x, y' 'init x = 0.6*l' "energy T = (x'^2 + y'^2)/2, V = 9.81*y" \
+	'constraint rod: x^2 + y^2 = l^2' 'output x, y' 'step 0.01' >rod.spec
+"$plrun" rod.spec 0 --sensitivity l,x,y 2>log | awk -F , 'NR == 2 { bad = 7; for (i = 1; i < 7; i++)
+	bad -= ($(i + 3) - substr("+0.60+1.00+0.00+0.80-0.75+0.00", 5*i - 4, 5))^2 < 1e-30 } END { exit bad != 1 }' &&
+	! grep misses log >&2
+result $? 'what follows from a constraint follows in each column'
 
 # ---- as an external function of CasADi: what its user's guide says, and differences of the function itself ----
 
