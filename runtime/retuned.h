@@ -20,7 +20,8 @@
  *     PL_COLUMNS_D                       derivatives, whose tables are an instance's too; 0: none
  *     PL(vary_params)(params, by)        how params vary with each column
  *     PL(varied_number)[]                of each, where the derivative of a number goes: the row is an entry of
- *                                        c->varied
+ *                                        c->varied, which PL(varied_first)[] divides as pl_variation says
+ *     PL_STEPS_D                         1: those of e^{A h} are c->varied_step
  *     PL_HALVINGS, PL_RUNGS              of pl_region_of: most; rungs
  *     PL(first_rung)[]                   of each linear system
  *     PL_GUARDS, PL_GUARD_ROWS, PL_VALUES, PL_IMPACTS, PL_FRICTION_FORCES   of friction and impacts: guards, their
@@ -300,6 +301,38 @@ static int PL(take_varied)(PL(coeffs) *c, const real params[PL_PARAMS], const pl
     }
     return status;
 }
+
+#if PL_STEPS_D
+/* Of e^{A h} of system k by column p: it stands in the lower rows of that of [A, 0; A_p, A] (Van Loan 1978), A_p in
+ * units of its largest number */
+static int PL(take_varied_step)(PL(coeffs) *c, int p, int k)
+{
+    enum { TWICE = 2 * PL_SIZE };
+    const int *const first = PL(varied_first) + p * (PL_BRANCHES + 5) + k;
+    real *const over = c->varied_step[p * PL_BRANCHES + k];
+    pl_two Z[TWICE * TWICE], D[TWICE * TWICE], work[PL_INCREMENT_WORK(TWICE)];
+    real most = 0;
+    int i, j, status;
+    for (i = 0; i < TWICE * TWICE; i++) {
+        const int row = i / TWICE, column = i % TWICE;
+        Z[i].lo = 0;
+        Z[i].hi = row / PL_SIZE == column / PL_SIZE ? c->slopes[k][row % PL_SIZE][column % PL_SIZE] : 0;
+    }
+    for (i = first[0]; i < first[1]; i++) {
+        most = pl_magnitude(c->varied[i].value) > most ? pl_magnitude(c->varied[i].value) : most;
+    }
+    for (i = first[0]; i < first[1] && most > 0; i++) {
+        Z[(PL_SIZE + c->varied[i].row) * TWICE + c->varied[i].column].hi = c->varied[i].value / most;
+    }
+    status = most > 0 ? pl_increment(TWICE, TWICE, Z, PL_H, 1, D, work) : 0;
+    for (i = 0; i < PL_SIZE && status == 0; i++) {
+        for (j = 0; j < PL_SIZE; j++) {
+            over[i * PL_SIZE + j] = most > 0 ? most * D[(PL_SIZE + i) * TWICE + j].hi : 0;
+        }
+    }
+    return status;
+}
+#endif
 #endif
 
 /* ---- all ---- */
@@ -356,6 +389,14 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
             PL(bound)(&fresh, i, h);
         }
     }
+#if PL_COLUMNS_D > 0 && PL_STEPS_D
+    for (i = 0; i < PL_COLUMNS_D * PL_BRANCHES && status == 0; i++) {
+        status = PL(take_varied_step)(&fresh, i / PL_BRANCHES, i % PL_BRANCHES);
+    }
+    if (status != 0) {
+        return status;
+    }
+#endif
 #if PL_EVENT_FREE
     PL(gather)(&fresh);
 #endif

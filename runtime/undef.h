@@ -134,6 +134,7 @@
 #undef PL_GUARD_TABLES
 #undef PL_AND_VARIATION
 #undef PL_COLUMNS_D
+#undef PL_STEPS_D
 #undef PL_D
 #undef PL_DEGREE_D
 #undef PL_MATRICES_D

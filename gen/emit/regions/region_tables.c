@@ -422,11 +422,12 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 	put_wholes(e, false, "varied_first", "Where the derivatives of each table begin, column by column: A of each "
 		   "linear system, switching functions, breakpoints, guards, assignments, times of changes",
 		   v.blocks + 1, v.first);
-	if (!e->model->params.retuned)
+	if (!e->model->params.retuned) {
 		put_entries(e, false, "varied", &v);
-	if (v.over)
-		emit_varied_steps(e, v.over);
-	say_macro(e, "VARIED_STEP", v.over ? spell(e, "$o_varied_step[0]") : "NULL");
+		if (v.over)
+			emit_varied_steps(e, v.over);
+	}
+	say_macro(e, "VARIED_STEP", v.over ? "PL_OF(varied_step)[0]" : "NULL");
 }
 
 void emit_own_variation(const struct emitter *e, const struct guards *g)
@@ -435,6 +436,8 @@ void emit_own_variation(const struct emitter *e, const struct guards *g)
 		return;
 	const struct variation v = variation_of(e->step, -1, g);
 	put_entries(e, true, "varied", &v);
+	if (v.over)
+		emit_varied_steps(e, v.over);
 }
 
 void emit_variation_macros(const struct emitter *e)

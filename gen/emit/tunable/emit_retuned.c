@@ -30,6 +30,13 @@ static int columns_of(const struct emitter *e)
 	return d && d->varied ? d->columns : 0;
 }
 
+/* Of e^{A h}, at most */
+static bool has_varied_steps(const struct emitter *e)
+{
+	const int cells = e->step->layout.size * e->step->layout.size;
+	return columns_of(e) && columns_of(e) * e->step->branches <= LIMIT_TUNED_NUMBERS / cells;
+}
+
 /* ---- the equations ---- */
 
 static const struct tuned_equations **list_equations(const struct emitter *e)
@@ -43,18 +50,16 @@ static const struct tuned_equations **list_equations(const struct emitter *e)
 }
 
 /* Of each column what its entries are the slopes of, in rows that count the entries of all columns */
-static struct tuned_equations *slopes_of_tables(const struct emitter *e, const struct guards *g)
+static struct tuned_equations *slopes_of_tables(const struct emitter *e, const struct variation *v)
 {
 	const int columns = columns_of(e), blocks = e->step->branches + VARIED_TABLES;
-	const struct variation v = columns ? variation_of(e->step, -1, has_guards(e) ? g : NULL)
-					   : (struct variation){ 0 };
 	struct tuned_equations *by = ARRAY(struct tuned_equations, (size_t)columns + 1);
 	for (int p = 0; p < columns; p++) {
-		by[p].rows = v.entries;
+		by[p].rows = v->entries;
 		by[p].columns = 1;
-		for (int i = v.first[p * blocks]; i < v.first[(p + 1) * blocks]; i++)
-			if (v.entry[i].made.number >= 0)
-				*MORE(by[p].entry, by[p].entries) = (struct tuned_entry){ i, 0, v.entry[i].made, 0 };
+		for (int i = v->first[p * blocks]; i < v->first[(p + 1) * blocks]; i++)
+			if (v->entry[i].made.number >= 0)
+				*MORE(by[p].entry, by[p].entries) = (struct tuned_entry){ i, 0, v->entry[i].made, 0 };
 	}
 	return by;
 }
@@ -69,12 +74,12 @@ static void emit_columns(const struct emitter *e, const struct equations_text *t
 }
 
 /* Of the numbers, then of each system, all by the same formulas; how many these are */
-static int emit_numbers(const struct emitter *e, const struct guards *g)
+static int emit_numbers(const struct emitter *e, const struct variation *v)
 {
 	const struct tuning *r = retuned_of(e);
 	const int systems = e->step->branches, columns = columns_of(e), count = systems + 1 + columns;
 	SCRATCH const struct tuned_equations **list = list_equations(e);
-	struct tuned_equations *slopes = slopes_of_tables(e, g);
+	struct tuned_equations *slopes = slopes_of_tables(e, v);
 	for (int p = 0; p < columns; p++)
 		list[systems + 1 + p] = &slopes[p];
 	struct equations_text *text = ARRAY(struct equations_text, (size_t)count);
@@ -242,7 +247,9 @@ void emit_retuned(const struct emitter *e)
 {
 	const struct switching *s = e->model->switching;
 	const struct guards g = has_guards(e) ? own_guards(e) : (struct guards){ 0 };
-	const int operations = emit_numbers(e, &g), taken = emit_from(e, &g);
+	const struct variation v = columns_of(e) ? variation_of(e->step, -1, has_guards(e) ? &g : NULL)
+						 : (struct variation){ 0 };
+	const int operations = emit_numbers(e, &v), taken = emit_from(e, &g);
 	if (has_guards(e))
 		emit_integers(e, "short", "guard_branch", g.rows, g.branch);
 	if (s->segments > 1)
@@ -258,7 +265,7 @@ void emit_retuned(const struct emitter *e)
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
 		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
-		   { "BOUNDED", bounded }, { "COLUMNS_D", columns_of(e) },
+		   { "BOUNDED", bounded }, { "COLUMNS_D", columns_of(e) }, { "STEPS_D", v.over != NULL },
 		   { "EVENT_FREE", e->step->regions.event_check.is_made });
 	if (e->step->regions.event_check.is_made)
 		emit_gathering(e);
@@ -267,15 +274,16 @@ void emit_retuned(const struct emitter *e)
 
 int retuned_numbers(const struct emitter *e)
 {
-	int size = e->step->layout.size;
-	return 2 * e->step->branches * size * size + rungs_of_all(e) * (size + 1) * size;
+	const int size = e->step->layout.size, columns = has_varied_steps(e) ? columns_of(e) : 0;
+	return (2 + columns) * e->step->branches * size * size + rungs_of_all(e) * (size + 1) * size;
 }
 
 int retuned_kilobytes(const struct emitter *e)
 {
-	int size = e->step->layout.size, cells = size * size, real = e->model->request.single ? 4 : 8;
+	const int size = e->step->layout.size, cells = size * size, real = e->model->request.single ? 4 : 8;
 	SCRATCH const struct tuned_equations **list = list_equations(e);
 	int twos = operations_behind(retuned_of(e), e->step->branches + 1, list) + retuned_of(e)->all.rows * size +
 		   8 * cells;
+	twos += has_varied_steps(e) ? 32 * cells : 0;
 	return 1 + real * (2 * twos + 4 * cells + 5 * size) / 1024;
 }

@@ -375,20 +375,34 @@ static void add_changes(struct reader *r, const struct model *more, const struct
 	end_block(r->to);
 }
 
-/* Of e^{A h}, size x size (Van Loan 1978): it stands in the lower rows of that of [A, 0; A_p, A].  false: unknown */
-static bool add_step(struct reader *r, const struct listing *own, int branch, double *over)
+/* What A of a linear system varies by: where the target makes it anew, of the numbers that it makes.  false: nothing */
+static bool read_change(const struct reader *r, const int *block, int branch, mpq_t *change)
 {
-	const int n = own->x->size, from = place_of(own, RETUNED_SYSTEM, branch, 0) * n,
-		  more = place_of(&r->more, RETUNED_SYSTEM, branch, 0) * n,
+	const int n = r->more.x->size, from = place_of(&r->more, RETUNED_SYSTEM, branch, 0) * n,
 		  less = place_of(&r->less, RETUNED_SYSTEM, branch, 0) * n;
-	mpq_t *Z = rationals((size_t)(4 * n * n));
-	INTERVAL value = OVER_BITS(320);
 	bool any = false;
+	if (!r->retuned) {
+		for (int i = 0; i < n * n; i++)
+			any |= find_change(r->v, r->more.entry[from + i], r->less.entry[less + i], change[i]);
+		return any;
+	}
+	for (int k = block[0]; k < block[1]; k++, any = true)
+		mpq_set_d(change[r->to->entry[k].row * n + r->to->entry[k].column], r->to->entry[k].value);
+	return any;
+}
+
+/* Of e^{A h}, size x size (Van Loan 1978): it stands in the lower rows of that of [A, 0; A_p, A].  false: unknown */
+static bool add_step(const struct reader *r, const struct listing *own, const int *block, int branch, double *over)
+{
+	const int n = own->x->size, from = place_of(own, RETUNED_SYSTEM, branch, 0) * n;
+	mpq_t *Z = rationals((size_t)(4 * n * n)), *change = rationals((size_t)(n * n));
+	INTERVAL value = OVER_BITS(320);
+	const bool any = read_change(r, block, branch, change);
 	for (int i = 0; i < n * n; i++) {
 		const int cell = i / n * 2 * n + i % n;
 		mpq_set(Z[cell], own->entry[from + i]);
 		mpq_set(Z[cell + 2 * n * n + n], own->entry[from + i]);
-		any |= find_change(r->v, r->more.entry[more + i], r->less.entry[less + i], Z[cell + 2 * n * n]);
+		mpq_set(Z[cell + 2 * n * n], change[i]);
 	}
 	struct taylor *t = any ? taylor_of(2 * n, Z, own->model->h) : NULL;
 	if (any && !taylor_enclose(t, 256))
@@ -401,20 +415,21 @@ static bool add_step(struct reader *r, const struct listing *own, int branch, do
 }
 
 /* Tables of all columns and matrices, unless they would be large; rows of a matrix stand one after the other */
-static double *steps_of(const struct step *step, int part)
+static double *steps_of(const struct step *step, int part, struct variation *to)
 {
 	const struct derivatives *d = step->shown->derivatives;
 	const int cells = step->layout.size * step->layout.size;
 	const struct listing own = listing_of(step, step->model);
-	if (d->columns * step->branches > LIMIT_TUNED_NUMBERS / cells || step->model->params.retuned)
+	if (d->columns * step->branches > LIMIT_TUNED_NUMBERS / cells)
 		return NULL;
-	double *over = ARRAY(double, (size_t)(d->columns * step->branches * cells)), *to = over;
+	double *over = ARRAY(double, (size_t)(d->columns * step->branches * cells)), *at = over;
 	for (int p = 0; p < d->columns; p++) {
 		const struct varied_model *v = &d->varied[p];
-		struct reader r = { v, listing_of(step, part_of(v->more, part)),
-				    listing_of(step, part_of(v->less, part)), .to = NULL };
-		for (int k = 0; k < step->branches; k++, to += cells)
-			if (!add_step(&r, &own, k, to))
+		const struct reader r = { v, listing_of(step, part_of(v->more, part)),
+					  listing_of(step, part_of(v->less, part)), to, step->model->params.retuned,
+					  NULL };
+		for (int k = 0; k < step->branches; k++, at += cells)
+			if (!add_step(&r, &own, to->first + p * (step->branches + VARIED_TABLES) + k, k, at))
 				return NULL;
 	}
 	return over;
@@ -441,7 +456,7 @@ struct variation variation_of(const struct step *step, int part, const struct gu
 		add_guards(&r, s, g);
 		add_changes(&r, v->more, v->less);
 	}
-	to.over = steps_of(step, part);
+	to.over = steps_of(step, part, &to);
 	return to;
 }
 
