@@ -225,6 +225,7 @@ void emit_formulas(struct formulas *f, int indent)
 {
 	formulas_finish(f);
 	struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
-				  .accumulate = "pl_accumulate", .context = f, .indent = indent };
+				  .accumulate = "pl_accumulate", .context = f, .indent = indent,
+				  .rows_alike = f->e->at != NULL };
 	tape_print(f->tape, &to, f->e->to);
 }

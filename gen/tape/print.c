@@ -2,6 +2,7 @@
 /* A tape as C: locals for what is read more than once, the rest inside one another. */
 #include "tape/tape.h"
 
+#include <ctype.h>
 #include <string.h>
 
 /* What the place of a text binds by: a choice stands in brackets everywhere */
@@ -67,14 +68,16 @@ static const char *argument_of(struct printing *p, tape_ref ref)
 
 /* ---- operations ---- */
 
-/* What is negative is subtracted. Of (a + b) + (c + d) lines break at the middle of what is too long for one, of
- * a + b + c + d before what would not fit. */
+/* What is negative is subtracted, or added where rows are to be alike. Of (a + b) + (c + d) lines break at the middle
+ * of what is too long for one, of a + b + c + d before what would not fit. */
 static const char *sum_text(struct printing *p, const struct tape_node *n, int indent)
 {
 	bool halves = tape_node(p->t, n->b)->op == TAPE_ADD && !is_shared(p, n->b);
 	const char *left = text_of(p, n->a, halves ? PRODUCT : SUM, indent + halves);
-	const char *right = text_of(p, n->b, PRODUCT, indent + 1), *sign = *right == '-' ? "-" : "+";
-	right += *right == '-';
+	const char *right = text_of(p, n->b, PRODUCT, indent + 1);
+	const bool subtracted = *right == '-' && !(p->to->rows_alike && isdigit((unsigned char)right[1]));
+	const char *sign = subtracted ? "-" : "+";
+	right += subtracted;
 	const char *line = strrchr(left, '\n');
 	int width = line && !halves ? (int)strlen(line + 1) : (int)strlen(left) + indent;
 	bool first = halves && is_word(left), wide = !first && width + (int)strlen(right) > WIDTH;

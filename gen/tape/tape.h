@@ -165,6 +165,7 @@ struct tape_target {
 	int indent;
 	bool locals_first;          /* before the first target is set, which what they read may be part of */
 	const struct tape_lanes *lanes; /* NULL: there are none */
+	bool rows_alike;            /* negative factors are added: rows that differ in numbers alone go side by side */
 };
 /* Locals for what is read more than once or has a name, outs in their order */
 void tape_print(const struct tape *t, const struct tape_target *to, FILE *out);
