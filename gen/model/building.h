@@ -66,6 +66,10 @@ struct segment_equations {          /* the equations and outputs in one interval
 /* ---- equations.c: equations and sketches to residuals ---- */
 
 void collect_equations(struct building *b, struct segment_equations *segment_equations);
+static inline const struct segment_equations *equations_of(const struct building *b)   /* with atoms, where any are */
+{
+	return b->full ? b->full : b->segment_equations;
+}
 void give_states_in_units(struct building *b);
 void collect_outputs(struct building *b, struct segment_equations *segment_equations);
 int  find_order(const struct spec *spec, int coord);

@@ -67,6 +67,10 @@ void eliminate_dependent(struct building *b, struct segment_equations *s);
 /* What brings a state back onto them: model->equations.correction; initial values that meet them */
 void keep_constraints(struct building *b);
 void find_conserved(void *building);                      /* model->equations.conserved */
+
+/* ---- meeting.c ---- */
+
+void meet_constraints(struct building *b);                /* the initial values, and derivatives of them */
 /* Moves a state onto them, first what is not named (per state; NULL: nothing is). At t; NULL: loads are left out.
  * Where none is found that meets them it leaves the statement. */
 void meet_constraints_near(struct building *b, mpq_t *state, const bool *named, mpq_srcptr t);
