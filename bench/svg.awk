@@ -246,6 +246,10 @@ name == "/defs" && defining { defining = 0; defined = 1; next }
 defining {
 	if (tag ~ /id='gp/) {
 		gsub(/[ \n\t]+/, " ", tag)
+		gsub(/ c[xy]='0'/, "", tag)                     # these are so anyway, and a shape has its own stroke
+		if (tag ~ /href/) gsub(/ stroke='(none|currentColor)'/, "", tag)
+		gsub(/,-/, "-", tag); gsub(/,0\./, ",.", tag); gsub(/'0\./, "'.", tag); gsub(/-0\./, "-.", tag)
+		gsub(/ L/, "L", tag); gsub(/ z/, "z", tag)
 		shape[short_id(attribute("id"))] = "<" short_id(tag) ">"
 	}
 	next
