@@ -438,7 +438,8 @@ static struct start start_from(struct building *b, mpq_t *state, mpq_srcptr t)
 	const int columns = b->spec->joined.columns;
 	struct start w = { .b = b, .n = n, .rows = m / (columns + 1), .all = m,
 			   .loose = ARRAY(double, (size_t)columns + 1), .value = rationals(states),
-			   .named = ARRAY(bool, states), .t = t, .g = ARRAY(double, m), .G = ARRAY(double, m * n), .S = ARRAY(double, m * m),
+			   .named = ARRAY(bool, states), .t = t,
+			   .g = ARRAY(double, m), .G = ARRAY(double, m * n), .S = ARRAY(double, m * m),
 			   .scale = ARRAY(double, m), .order = ARRAY(int, m) };
 	set_values(&w, state);
 	return w;
