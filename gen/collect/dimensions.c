@@ -44,6 +44,68 @@ static const char *state_text(const struct symbol *coord, int component, int pri
 			 : format("%s%.*s", coord->name, primes, "''");
 }
 
+/* The force of an element, by the coordinates between which it acts */
+static struct dimension of_element(struct dimensions *w, const struct element *e)
+{
+	RATIONAL one = RATIO(1, 1);
+	struct dimension d = dimension_of(w, e->value), at = of_name(w, e->from), force = dimension_in(NULL);
+	if (d.kind == NUMBERS || d.kind == SILENT || at.kind == SILENT)
+		return dimension_without(SILENT);
+	add_dimension(w, &force, &d, one);
+	if (e->kind == ELEMENT_FORCE || e->kind == ELEMENT_FRICTION)
+		return force;
+	if (e->kind == ELEMENT_ENERGY) {        /* over the coordinate */
+		mpq_set_si(one, -1, 1);
+		add_dimension(w, &force, &at, one);
+		return force;
+	}
+	RATIONAL order = RATIO(e->kind == ELEMENT_MASS ? -2 : e->kind == ELEMENT_DAMPER ? -1 : 0, 1);
+	add_dimension(w, &force, &at, one);
+	mpq_add(force.base[SECOND], force.base[SECOND], order);
+	return force;
+}
+
+/* That of energy, by what is written: T, V, or an element's force times its way */
+static struct dimension of_energies(struct dimensions *w, const struct spec *spec)
+{
+	RATIONAL one = RATIO(1, 1);
+	struct dimension energy = dimension_in(NULL), d = dimension_without(SILENT);
+	for (int i = 0; i < spec->lagrange.energies && d.kind != GIVEN; i++)
+		if (spec->lagrange.energy[i].kind == 'T' || spec->lagrange.energy[i].kind == 'V')
+			d = dimension_of(w, spec->lagrange.energy[i].value);
+	for (int i = 0; i < spec->elements && d.kind != GIVEN; i++) {
+		const struct dimension way = of_name(w, spec->element[i].from);
+		d = of_element(w, &spec->element[i]);
+		if (d.kind == GIVEN)
+			add_dimension(w, &energy, &way, one);
+	}
+	energy.kind = d.kind;
+	if (d.kind == GIVEN)
+		add_dimension(w, &energy, &d, one);
+	return energy;
+}
+
+/* A number is a force or a mass in its own statement; in the products of a total it would be a factor. */
+static bool add_total(struct dimensions *w, const struct symbol *s)
+{
+	const struct total *total = w->spec->lagrange.total, *end = total + w->spec->lagrange.totals;
+	while (total < end && total->let != s)
+		total++;
+	if (total == end)
+		return false;
+	RATIONAL time = RATIO(total->kind == TOTAL_POWER ? -1 : total->kind == TOTAL_MOMENTUM, 1), minus = RATIO(-1, 1);
+	int group = add_pair(w, s, format("'%s'", s->name), NULL, s->at, of_symbol(w, s, 0));
+	struct dimension d = of_energies(w, w->spec);
+	mpq_add(d.base[SECOND], d.base[SECOND], time);
+	if (total->kind == TOTAL_MOMENTUM) {
+		const struct dimension at = of_name(w, total->coord);
+		add_dimension(w, &d, &at, minus);
+	}
+	w->group[group].defines = true;
+	add_term(&w->group[group], NULL, NULL, s->at, d);
+	return true;
+}
+
 static void add_value(struct dimensions *w, const struct symbol *s)
 {
 	if (s->delayed) {
@@ -51,7 +113,7 @@ static void add_value(struct dimensions *w, const struct symbol *s)
 		add_terms(w, time, s->when);
 		return;
 	}
-	if (!s->value || s->kind == SYMBOL_PART_OUTPUT)
+	if (!s->value || s->kind == SYMBOL_PART_OUTPUT || add_total(w, s))
 		return;
 	if (s->kind == SYMBOL_MATRIX && !s->unit_written) {
 		w->statement = s;
@@ -77,27 +139,6 @@ static void add_bounds(struct dimensions *w, int count, const struct state_bound
 		if (b->high)
 			add_terms(w, group, b->high);
 	}
-}
-
-/* The force of an element, by the coordinates between which it acts */
-static struct dimension of_element(struct dimensions *w, const struct element *e)
-{
-	RATIONAL one = RATIO(1, 1);
-	struct dimension d = dimension_of(w, e->value), at = of_name(w, e->from), force = dimension_in(NULL);
-	if (d.kind == NUMBERS || d.kind == SILENT || at.kind == SILENT)
-		return dimension_without(SILENT);
-	add_dimension(w, &force, &d, one);
-	if (e->kind == ELEMENT_FORCE || e->kind == ELEMENT_FRICTION)
-		return force;
-	if (e->kind == ELEMENT_ENERGY) {        /* over the coordinate */
-		mpq_set_si(one, -1, 1);
-		add_dimension(w, &force, &at, one);
-		return force;
-	}
-	RATIONAL order = RATIO(e->kind == ELEMENT_MASS ? -2 : e->kind == ELEMENT_DAMPER ? -1 : 0, 1);
-	add_dimension(w, &force, &at, one);
-	mpq_add(force.base[SECOND], force.base[SECOND], order);
-	return force;
 }
 
 static bool is_same_place(const struct node *a, const struct node *b)
