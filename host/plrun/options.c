@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 struct words {                          /* of the command line, and which is next */
@@ -405,6 +406,32 @@ static void check_page(const struct options *o)
 		wrong_usage(format("%s does not go with --page: a page has its controls", surplus));
 }
 
+/* A file has many names; devices and pipes may be named twice. */
+static void check_name(const char *written, const char *other)
+{
+	struct stat a, b;
+	if (!written || !other)
+		return;
+	const bool both = stat(written, &a) == 0 && stat(other, &b) == 0;
+	if (both ? S_ISREG(a.st_mode) && a.st_dev == b.st_dev && a.st_ino == b.st_ino : strcmp(written, other) == 0)
+		wrong_usage(format("'%s' would be written over", written));
+}
+
+static void check_names(const struct options *o)
+{
+	const char *written[] = { o->plot_file, o->output }, *read[] = { o->spec, o->input, o->sweep };
+	check_name(o->plot_file, o->output);
+	for (int i = 0; i < 2; i++) {
+		for (int j = 0; j < 3; j++)
+			check_name(written[i], read[j]);
+		for (size_t k = 0; k < o->fit_records; k++)
+			check_name(written[i], o->fit_record[k]);
+		for (size_t k = 0; k < o->passed_count; k++)
+			if (strncmp(o->passed[k], "--params=", strlen("--params=")) == 0)
+				check_name(written[i], o->passed[k] + strlen("--params="));
+	}
+}
+
 static void check(const struct options *o)
 {
 	check_fit(o);
@@ -444,11 +471,7 @@ static void check(const struct options *o)
 		wrong_usage("--raw is not for a terminal: -o FILE");
 	if (o->every == 0)
 		wrong_usage("--every: expected a time above 0");
-	const char *written[] = { o->output, o->plot_file }, *read[] = { o->spec, o->input, o->sweep };
-	for (int i = 0; i < 2; i++)
-		for (int j = 0; j < 3; j++)
-			if (written[i] && read[j] && strcmp(written[i], read[j]) == 0)
-				wrong_usage(format("'%s' would be written over", written[i]));
+	check_names(o);
 }
 
 void read_options(int argc, char **argv, struct options *o)

@@ -175,6 +175,10 @@ refuses 'rows apart by no whole steps' 2 "plrun: error: --every takes a multiple
 $usage" swing.spec 1 --every 0.25
 refuses 'the input written over' 2 "plrun: error: 'r.csv' would be written over
 $usage" in.spec --input r.csv -o r.csv
+refuses 'the spec by another name' 2 "plrun: error: './swing.spec' would be written over
+$usage" swing.spec 1 -o ./swing.spec
+refuses 'the rows written over' 2 "plrun: error: 'a.svg' would be written over
+$usage" swing.spec 1 -o a.svg --plot a.svg
 refuses 'samples of no inputs' 2 "plrun: error: --input: the model 'swing' has no inputs
 $usage" swing.spec --input empty.csv
 refuses 'inputs without samples' 2 "plrun: error: the model 'in' has inputs: --input FILE.csv gives their samples
