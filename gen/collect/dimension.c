@@ -2,6 +2,8 @@
 /* Dimensions as vectors over base units and what is not known yet, and those of expressions. */
 #include "collect/dimensions.h"
 
+#include <string.h>
+
 /* ---- dimensions as vectors ---- */
 
 struct dimension dimension_in(const mpq_t *base)
@@ -362,4 +364,65 @@ struct dimension dimension_of(struct dimensions *w, const struct node *node)
 	struct dimension d = of_node(w, node);
 	w->depth--;
 	return d;
+}
+
+/* ---- statements of forces and energies ---- */
+
+const struct energy *first_energy(const struct dimensions *w)
+{
+	const struct energy *all = w->spec->lagrange.energy;
+	for (int i = 0; i < w->spec->lagrange.energies; i++)
+		if (strchr("TVD", all[i].kind))
+			return &all[i];
+	return NULL;
+}
+
+struct dimension of_written_energy(struct dimensions *w)
+{
+	const struct energy *first = first_energy(w);
+	RATIONAL one = RATIO(1, 1);
+	struct dimension d = first ? dimension_of(w, first->value) : dimension_without(SILENT);
+	struct dimension energy = dimension_in(NULL);
+	energy.kind = d.kind;
+	if (d.kind != GIVEN)
+		return energy;
+	add_dimension(w, &energy, &d, one);
+	if (first->kind == 'D')                 /* half a power */
+		mpq_add(energy.base[SECOND], energy.base[SECOND], one);
+	return energy;
+}
+
+/* The force of an element, by the coordinates between which it acts */
+struct dimension of_element(struct dimensions *w, const struct element *e)
+{
+	RATIONAL one = RATIO(1, 1);
+	struct dimension d = e->kind == ELEMENT_ENERGY ? of_written_energy(w) : dimension_of(w, e->value);
+	struct dimension at = of_name(w, e->from), force = dimension_in(NULL);
+	if (d.kind == NUMBERS || d.kind == SILENT || at.kind == SILENT)
+		return dimension_without(SILENT);
+	add_dimension(w, &force, &d, one);
+	if (e->kind == ELEMENT_FORCE || e->kind == ELEMENT_FRICTION)
+		return force;
+	if (e->kind == ELEMENT_ENERGY) {        /* over the coordinate */
+		mpq_set_si(one, -1, 1);
+		add_dimension(w, &force, &at, one);
+		return force;
+	}
+	RATIONAL order = RATIO(e->kind == ELEMENT_MASS ? -2 : e->kind == ELEMENT_DAMPER ? -1 : 0, 1);
+	add_dimension(w, &force, &at, one);
+	mpq_add(force.base[SECOND], force.base[SECOND], order);
+	return force;
+}
+
+struct dimension of_energies(struct dimensions *w)
+{
+	RATIONAL one = RATIO(1, 1);
+	struct dimension energy = of_written_energy(w);
+	for (int i = 0; i < w->spec->elements && energy.kind != GIVEN; i++) {
+		const struct dimension way = of_name(w, w->spec->element[i].from);
+		energy = of_element(w, &w->spec->element[i]);
+		if (energy.kind == GIVEN)
+			add_dimension(w, &energy, &way, one);
+	}
+	return energy;
 }

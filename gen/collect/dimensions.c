@@ -44,47 +44,6 @@ static const char *state_text(const struct symbol *coord, int component, int pri
 			 : format("%s%.*s", coord->name, primes, "''");
 }
 
-/* The force of an element, by the coordinates between which it acts */
-static struct dimension of_element(struct dimensions *w, const struct element *e)
-{
-	RATIONAL one = RATIO(1, 1);
-	struct dimension d = dimension_of(w, e->value), at = of_name(w, e->from), force = dimension_in(NULL);
-	if (d.kind == NUMBERS || d.kind == SILENT || at.kind == SILENT)
-		return dimension_without(SILENT);
-	add_dimension(w, &force, &d, one);
-	if (e->kind == ELEMENT_FORCE || e->kind == ELEMENT_FRICTION)
-		return force;
-	if (e->kind == ELEMENT_ENERGY) {        /* over the coordinate */
-		mpq_set_si(one, -1, 1);
-		add_dimension(w, &force, &at, one);
-		return force;
-	}
-	RATIONAL order = RATIO(e->kind == ELEMENT_MASS ? -2 : e->kind == ELEMENT_DAMPER ? -1 : 0, 1);
-	add_dimension(w, &force, &at, one);
-	mpq_add(force.base[SECOND], force.base[SECOND], order);
-	return force;
-}
-
-/* That of energy, by what is written: T, V, or an element's force times its way */
-static struct dimension of_energies(struct dimensions *w, const struct spec *spec)
-{
-	RATIONAL one = RATIO(1, 1);
-	struct dimension energy = dimension_in(NULL), d = dimension_without(SILENT);
-	for (int i = 0; i < spec->lagrange.energies && d.kind != GIVEN; i++)
-		if (spec->lagrange.energy[i].kind == 'T' || spec->lagrange.energy[i].kind == 'V')
-			d = dimension_of(w, spec->lagrange.energy[i].value);
-	for (int i = 0; i < spec->elements && d.kind != GIVEN; i++) {
-		const struct dimension way = of_name(w, spec->element[i].from);
-		d = of_element(w, &spec->element[i]);
-		if (d.kind == GIVEN)
-			add_dimension(w, &energy, &way, one);
-	}
-	energy.kind = d.kind;
-	if (d.kind == GIVEN)
-		add_dimension(w, &energy, &d, one);
-	return energy;
-}
-
 /* A number is a force or a mass in its own statement; in the products of a total it would be a factor. */
 static bool add_total(struct dimensions *w, const struct symbol *s)
 {
@@ -95,7 +54,7 @@ static bool add_total(struct dimensions *w, const struct symbol *s)
 		return false;
 	RATIONAL time = RATIO(total->kind == TOTAL_POWER ? -1 : total->kind == TOTAL_MOMENTUM, 1), minus = RATIO(-1, 1);
 	int group = add_pair(w, s, format("'%s'", s->name), NULL, s->at, of_symbol(w, s, 0));
-	struct dimension d = of_energies(w, w->spec);
+	struct dimension d = of_energies(w);
 	mpq_add(d.base[SECOND], d.base[SECOND], time);
 	if (total->kind == TOTAL_MOMENTUM) {
 		const struct dimension at = of_name(w, total->coord);
@@ -181,24 +140,56 @@ static void add_elements(struct dimensions *w)
 		}
 }
 
+static bool reads_velocities(const struct node *node, bool *seen)
+{
+	const struct symbol *s = node->kind == NODE_NAME ? node->symbol : NULL;
+	bool reads = s && s->kind == SYMBOL_COORD && node->primes > 0;
+	if (s && s->kind == SYMBOL_LET && s->value && !seen[s->number]) {
+		seen[s->number] = true;
+		reads = reads_velocities(s->value, seen);
+	}
+	for (int i = 0; !s && i < node->children && !reads; i++)
+		reads = reads_velocities(node->child[i], seen);
+	return reads;
+}
+
+/* Its terms are alike. The multiplier times it is an energy, of velocities a power. */
+static void add_constraint(struct dimensions *w, const struct energy *e)
+{
+	RATIONAL minus = RATIO(-1, 1);
+	SCRATCH bool *seen = ARRAY(bool, (size_t)w->spec->count.symbols + 1);
+	add_terms(w, new_group(w, "the constraint"), e->value);
+	struct dimension multiplier = of_energies(w), g = dimension_of(w, e->value->child[0]);
+	g = g.kind == GIVEN ? g : dimension_of(w, e->value->child[1]);
+	if (g.kind != GIVEN || multiplier.kind != GIVEN)
+		return;
+	if (reads_velocities(e->value, seen))
+		mpq_add(multiplier.base[SECOND], multiplier.base[SECOND], minus);
+	add_dimension(w, &multiplier, &g, minus);
+	int group = add_pair(w, e, format("'%s'", e->multiplier->name), NULL, e->at, of_symbol(w, e->multiplier, 0));
+	w->group[group].defines = true;
+	add_term(&w->group[group], NULL, NULL, e->at, multiplier);
+}
+
 /* Energies have one dimension, as has a force at a point times its place; dissipated power is that over time. */
 static void add_energies(struct dimensions *w)
 {
 	const struct spec *spec = w->spec;
+	const struct energy *first = first_energy(w);
 	RATIONAL one = RATIO(1, 1);
 	for (int i = 0; i < spec->lagrange.energies; i++) {
 		const struct energy *e = &spec->lagrange.energy[i];
 		w->statement = e;
+		if (e->kind == 'G')
+			add_constraint(w, e);
+		const struct dimension energy = of_written_energy(w);
+		if (e->kind == 'G' || energy.kind != GIVEN)
+			continue;
 		int group = new_group(w, e->kind == 'D' ? "the dissipation" : "the energies");
-		struct dimension first = dimension_in(NULL), of_first = dimension_of(w, spec->lagrange.energy[0].value);
-		if (spec->lagrange.energy[0].point || of_first.kind != GIVEN)
-			return;
-		add_dimension(w, &first, &of_first, one);
 		if (e->kind == 'D')
-			mpq_sub(first.base[SECOND], first.base[SECOND], one);
-		if (i > 0)
-			add_term(&w->group[group], NULL, format("%c", spec->lagrange.energy[0].kind),
-				 spec->lagrange.energy[0].at, first);
+			mpq_sub(energy.base[SECOND], energy.base[SECOND], one);
+		if (e != first)
+			add_term(&w->group[group], NULL, format("%c", first->kind), first->at, energy);
 		for (int k = 0; k < (e->point ? e->point->children : 0); k++) {
 			struct dimension F = dimension_of(w, e->value->child[k]);
 			struct dimension r = dimension_of(w, e->point->child[k]);

@@ -74,5 +74,9 @@ void add_term(struct group *group, const struct node *node, const char *text, st
 void add_terms(struct dimensions *w, int group, const struct node *node); /* of a sum, those of brackets in it too */
 void need_number(struct dimensions *w, const char *what, const struct node *node, struct dimension d);
 struct dimension dimension_of(struct dimensions *w, const struct node *node);
+const struct energy *first_energy(const struct dimensions *w);     /* T, V or D, the first; NULL: there is none */
+struct dimension of_written_energy(struct dimensions *w);          /* of energy, as that one says */
+struct dimension of_element(struct dimensions *w, const struct element *e); /* its force, by where it acts */
+struct dimension of_energies(struct dimensions *w);                /* of energy, as that one or an element says */
 
 #endif

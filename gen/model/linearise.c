@@ -84,6 +84,7 @@ static int take_values(struct linearising *l, const char *at)
 		struct node *node = parse_argument(l->b->spec, source, place.offset + name + 1, place.offset + end);
 		if (!node)
 			abandon();
+		check_unit(l, node, state);
 		collect_constant(&l->b->collector, node, value);
 		if (beyond_range(value))
 			error(place, NULL, "the value is beyond the range of %s", target_name());

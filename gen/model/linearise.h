@@ -33,6 +33,7 @@ struct linearising {
 /* ---- point.c: the point, the equations and their derivatives there ---- */
 
 void list_fixings(struct linearising *l);
+void check_unit(const struct linearising *l, const struct node *node, int state);  /* number `states`: of t */
 void list_residuals(struct linearising *l);
 const struct constraint *constraint_of(const struct linearising *l, int row);
 /* d form / d what `fixing` fixes, of `count` forms at the point; form NULL: of the residuals */

@@ -8,6 +8,20 @@
 
 /* ---- the point ---- */
 
+void check_unit(const struct linearising *l, const struct node *node, int state)
+{
+	const struct linear *system = &l->b->model->system;
+	if (state == l->states)
+		check_time(node);
+	if (state == l->states || !node->unit)
+		return;
+	const int coord = state < system->n ? state : system->coord[state];
+	const struct unit *unit = l->b->model->frame.coord[coord]->unit;
+	unit = unit ? unit_of_derivative(unit, state >= system->n) : NULL;
+	if (unit && !rationals_equal(UNIT_BASES, (const mpq_t *)node->unit->base, (const mpq_t *)unit->base))
+		error(node->unit->at, NULL, "'%s' is in %s", l->b->model->names.state[state], unit->text);
+}
+
 static struct fixing *add_fixing(struct linearising *l, const struct symbol *symbol, int index, int order)
 {
 	struct fixing *f = MORE(l->fixing, l->fixings);
