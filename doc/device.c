@@ -10,7 +10,7 @@
 
 enum { COUNT = 1000, ROWS = 500, STATES = OSCILLATOR_BATCH_ROWS * COUNT, OUTPUTS = OSCILLATOR_OUTPUTS * COUNT };
 static double y[STATES], start[STATES], factors[OSCILLATOR_BATCH_FACTORS * COUNT], peak[OUTPUTS], first[OUTPUTS];
-static double sum[OUTPUTS], record[ROWS * OSCILLATOR_INPUTS], now[(ROWS + 1) * OSCILLATOR_BATCH_SHARED];
+static double sum[4 * OUTPUTS], record[ROWS * OSCILLATOR_INPUTS], now[(ROWS + 1) * OSCILLATOR_BATCH_SHARED];
 static oscillator_instances b, device;
 static cl_context context;
 
@@ -51,14 +51,14 @@ int main(void)
 	device = b;
 	oscillator_batch_share(&device, ROWS, record, now);
 
-	const cl_ulong count = COUNT, steps = ROWS;
+	const cl_ulong number[] = { COUNT, 0, ROWS };           /* instances; steps taken, to be taken */
 	const size_t items = COUNT;
 	cl_mem argument[] = { memory(start, sizeof start), memory(factors, sizeof factors), memory(now, sizeof now),
 			      memory(first, sizeof first), memory(sum, sizeof sum) };
-	clSetKernelArg(kernel, 0, sizeof count, &count);
-	clSetKernelArg(kernel, 1, sizeof steps, &steps);
+	for (cl_uint i = 0; i < 3; i++)
+		clSetKernelArg(kernel, i, sizeof number[i], &number[i]);
 	for (cl_uint i = 0; i < 5; i++)
-		clSetKernelArg(kernel, 2 + i, sizeof argument[i], &argument[i]);
+		clSetKernelArg(kernel, 3 + i, sizeof argument[i], &argument[i]);
 	clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL);
 	clEnqueueReadBuffer(queue, argument[0], CL_TRUE, 0, sizeof start, start, 0, NULL, NULL);
 	clEnqueueReadBuffer(queue, argument[3], CL_TRUE, 0, sizeof first, first, 0, NULL, NULL);

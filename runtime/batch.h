@@ -565,6 +565,14 @@ static int PL(many_status)(const void *b, size_t j)
     return PL(batch_status)((const PL_INSTANCES *)b, j);
 }
 
+#if PL_SHARES
+static void PL(many_share)(void *b, size_t n, const real *u, real *now)
+{
+    (void)u;
+    PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
+}
+#endif
+
 const pl_many PL(many) = {
     sizeof(PL_INSTANCES), PL_ROWS, PL_FACTORS, PL(many_init),
 #if PL_RAMPS
@@ -572,7 +580,12 @@ const pl_many PL(many) = {
 #else
     NULL,
 #endif
-    PL(many_retune), PL(many_run), PL(many_status)
+    PL(many_retune), PL(many_run), PL(many_status), PL_SHARED,
+#if PL_SHARES
+    PL(many_share)
+#else
+    NULL
+#endif
 };
 #endif
 

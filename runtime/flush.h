@@ -9,14 +9,21 @@
  *     PL_FLUSHES, PL_DECAYING    parts; the first of them, which decay
  *     PL(flush_part)[]           of each state its part, where there is more than one
  *     PL_FLUSHES_BESIDE          1: states are compared with others, too
- *     PL_COMPENSATED             1: low parts of states become 0 with them */
+ *     PL_COMPENSATED             1: low parts of states become 0 with them
+ *     PL_FLUSH_BITS, PL_FLUSH_FUNCTION    in a kernel: integers of a number's size, its functions' qualifier */
 #include "numbers.h"
 
+#ifndef PL_FLUSH_FUNCTION
+#define PL_FLUSH_FUNCTION
 #if PL_SINGLE
 #define PL_FLUSH_BITS uint32_t
-enum { PL(flush_shift) = 24, PL(flush_least) = 11, PL(flush_beside) = 120, PL(flush_one) = 127 };
 #else
 #define PL_FLUSH_BITS uint64_t
+#endif
+#endif
+#if PL_SINGLE
+enum { PL(flush_shift) = 24, PL(flush_least) = 11, PL(flush_beside) = 120, PL(flush_one) = 127 };
+#else
 enum { PL(flush_shift) = 53, PL(flush_least) = 60, PL(flush_beside) = 900, PL(flush_one) = 1023 };
 #endif
 #if PL_FLUSHES > 1
@@ -25,7 +32,7 @@ enum { PL(flush_shift) = 53, PL(flush_least) = 60, PL(flush_beside) = 900, PL(fl
 #define PL_FLUSH_PART(i) 0
 #endif
 
-static inline int PL(flush_exponent)(real value)
+static inline PL_FLUSH_FUNCTION int PL(flush_exponent)(real value)
 {
     union {
         real value;
@@ -35,7 +42,7 @@ static inline int PL(flush_exponent)(real value)
     return (int)((of.bits << 1) >> PL(flush_shift));
 }
 
-static PL_APART void PL(flush)(PL_TYPE *s)
+static PL_APART PL_FLUSH_FUNCTION void PL(flush)(PL_TYPE *s)
 {
     int i;
 #if PL_FLUSHES_BESIDE
@@ -62,5 +69,6 @@ static PL_APART void PL(flush)(PL_TYPE *s)
 }
 
 #undef PL_FLUSH_BITS
+#undef PL_FLUSH_FUNCTION
 #undef PL_FLUSH_PART
 #include "undef.h"

@@ -7,6 +7,7 @@
  *     PL_STEPPED, PL_OUTPUTS     numbers of an instance that a step changes, outputs
  *     PL_SHARED, PL_LANES        numbers of a step that instances share; that params decide, of an instance
  *     PL_OVER, PL_STATES         steps of a series of fixed order, series_lanes.h, and states; 0: a linear step
+ *     PL_FLUSHES                 above 0: decayed states become 0, by PL(flush) on PL(flushed) of flush.h
  *     pl_lanes                   a number, of which there is one in each work item
  *
  * and behind it PL(lanes_step), or PL(lanes_pass), and PL(lanes_out), as batch.h has them. */
@@ -97,13 +98,34 @@ PL_OWN_FUNCTION void PL(kernel_step)(pl_lanes *y, const pl_lanes *factor, const 
 #endif
 PL_OWN_FUNCTION void PL(lanes_out)(const pl_lanes *y, const pl_lanes *factor, const real *now, pl_lanes *out);
 
-/* n steps of instance j; most, sum: of each output the largest size and the sum at their ends */
-PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_TYPE n, PL_GLOBAL real *y,
-                                    PL_GLOBAL const real *factors, PL_GLOBAL const real *now, PL_GLOBAL real *peak,
-                                    PL_GLOBAL real *sum)
+#if PL_FLUSHES > 0
+/* Behind every 64th step */
+PL_OWN_FUNCTION void PL(kernel_flush)(real *state)
+{
+    PL(flushed) s;
+    const int count = (int)(sizeof s / sizeof(real));
+    real *const kept = (real *)&s;
+    int i;
+    for (i = 0; i < count; i++) {
+        kept[i] = state[i];
+    }
+    PL(flush)(&s);
+    for (i = 0; i < count; i++) {
+        state[i] = kept[i];
+    }
+}
+#endif
+
+/* Sum i of output o, of instance j */
+#define PL_SUM(i, o) sum[((PL_SIZE_TYPE)(i)*PL_OUTPUTS + (PL_SIZE_TYPE)(o)) * count + j]
+
+/* n steps of instance j behind `taken` ones */
+PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_TYPE taken, PL_SIZE_TYPE n,
+                                    PL_GLOBAL real *y, PL_GLOBAL const real *factors, PL_GLOBAL const real *now,
+                                    PL_GLOBAL real *peak, PL_GLOBAL real *sum)
 {
     real state[PL_STEPPED], factor[PL_HAS(PL_LANES)], shared[PL_HAS(PL_SHARED)], out[PL_OUTPUTS];
-    real most[PL_OUTPUTS], total[PL_OUTPUTS];
+    real most[PL_OUTPUTS], total[PL_OUTPUTS], squares[PL_OUTPUTS], low[PL_OUTPUTS];
     PL_SIZE_TYPE k;
     int i;
     factor[0] = shared[0] = 0;
@@ -115,18 +137,29 @@ PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_
     }
     for (i = 0; i < PL_OUTPUTS; i++) {
         most[i] = peak[(PL_SIZE_TYPE)i * count + j];
-        total[i] = sum[(PL_SIZE_TYPE)i * count + j];
+        total[i] = PL_SUM(0, i);
+        squares[i] = PL_SUM(1, i);
+        low[i] = PL_SUM(2, i);
+        out[i] = PL_SUM(3, i);
     }
     for (k = 1; k <= n; k++) {
         for (i = 0; i < PL_SHARED; i++) {
             shared[i] = now[k * PL_SHARED + (PL_SIZE_TYPE)i];
         }
         PL(kernel_step)(state, factor, shared);
+#if PL_FLUSHES > 0
+        if (((taken + k) & 63) == 0) {
+            PL(kernel_flush)(state);
+        }
+#endif
         PL(lanes_out)(state, factor, shared, out);
         for (i = 0; i < PL_OUTPUTS; i++) {
-            const real size = out[i] < 0 ? -out[i] : out[i];
+            const real size = out[i] < 0 ? -out[i] : out[i], square = out[i] * out[i];
+            const real whole = squares[i] + square, part = whole - squares[i];
             most[i] = most[i] > size ? most[i] : size;
             total[i] += out[i];
+            low[i] += (squares[i] - (whole - part)) + (square - part);
+            squares[i] = whole;
         }
     }
     for (i = 0; i < PL_STEPPED; i++) {
@@ -134,43 +167,50 @@ PL_OWN_FUNCTION void PL(kernel_run)(PL_SIZE_TYPE j, PL_SIZE_TYPE count, PL_SIZE_
     }
     for (i = 0; i < PL_OUTPUTS; i++) {
         peak[(PL_SIZE_TYPE)i * count + j] = most[i];
-        sum[(PL_SIZE_TYPE)i * count + j] = total[i];
+        PL_SUM(0, i) = total[i];
+        PL_SUM(1, i) = squares[i];
+        PL_SUM(2, i) = low[i];
+        PL_SUM(3, i) = out[i];
     }
     (void)factors;
     (void)now;
+    (void)taken;
 }
 
-/* All of them: y and factors as in NAME_instances, now as NAME_batch_share has it, peak and sum: [outputs][count] */
-PL_KERNEL PL(kernel)(PL_SIZE_TYPE count, PL_SIZE_TYPE n, PL_GLOBAL real *y, PL_GLOBAL const real *factors,
-                     PL_GLOBAL const real *now, PL_GLOBAL real *peak, PL_GLOBAL real *sum)
+/* All of them: y and factors as in NAME_instances, now as NAME_batch_share has it.  Of ends of steps, going on from
+ * what is there: peak: [outputs][count], the largest sizes; sum: [4][outputs][count], sums, sums of squares in two
+ * parts, and the last values. */
+PL_KERNEL PL(kernel)(PL_SIZE_TYPE count, PL_SIZE_TYPE taken, PL_SIZE_TYPE n, PL_GLOBAL real *y,
+                     PL_GLOBAL const real *factors, PL_GLOBAL const real *now, PL_GLOBAL real *peak,
+                     PL_GLOBAL real *sum)
 {
 #if PL_OPENCL
     const PL_SIZE_TYPE j = get_global_id(0);
     if (j < count) {
-        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+        PL(kernel_run)(j, count, taken, n, y, factors, now, peak, sum);
     }
 #elif PL_CUDA
     const PL_SIZE_TYPE j = (PL_SIZE_TYPE)blockIdx.x * blockDim.x + threadIdx.x;
     if (j < count) {
-        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+        PL(kernel_run)(j, count, taken, n, y, factors, now, peak, sum);
     }
 #else
     PL_SIZE_TYPE j;
 #pragma omp target teams distribute parallel for \
-    map(tofrom : y[:PL_STEPPED * count], peak[:PL_OUTPUTS * count], sum[:PL_OUTPUTS * count]) \
+    map(tofrom : y[:PL_STEPPED * count], peak[:PL_OUTPUTS * count], sum[:4 * PL_OUTPUTS * count]) \
     map(to : factors[:PL_LANES * count], now[:(n + 1) * PL_SHARED])
     for (j = 0; j < count; j++) {
-        PL(kernel_run)(j, count, n, y, factors, now, peak, sum);
+        PL(kernel_run)(j, count, taken, n, y, factors, now, peak, sum);
     }
 #endif
 }
 
 #if PL_CUDA
 /* The same from the host, on memory of the device: by blocks of 128 instances */
-extern "C" int PL(launch)(PL_SIZE_TYPE count, PL_SIZE_TYPE n, real *y, const real *factors, const real *now, real *peak,
-                          real *sum)
+extern "C" int PL(launch)(PL_SIZE_TYPE count, PL_SIZE_TYPE taken, PL_SIZE_TYPE n, real *y, const real *factors,
+                          const real *now, real *peak, real *sum)
 {
-    PL(kernel)<<<(unsigned)((count + 127) / 128), 128>>>(count, n, y, factors, now, peak, sum);
+    PL(kernel)<<<(unsigned)((count + 127) / 128), 128>>>(count, taken, n, y, factors, now, peak, sum);
     return (int)cudaGetLastError();
 }
 #endif

@@ -217,9 +217,9 @@ int main(int argc, char **argv)
 	(void)flags_of(argc, &argv, "", 2, 2, "frame VARIANTS OUTDIR");
 	ask(&b, argv[0]);
 	record_of_quake(b.sample);
-	FILE *csv = table_open(argv[1], "frame_record.csv", "t_s,quake_m_per_s2");
+	FILE *csv = table_open(argv[1], "frame_record.csv", "quake_m_per_s2_each_0.02_s");
 	for (int k = 0; k < SAMPLES; k++)
-		fprintf(csv, "%.2f,%g\n", k * sample_time, b.sample[k]);
+		fprintf(csv, "%g\n", b.sample[k]);
 	table_close(csv, "frame_record.csv");
 	say_progress("frame: three storeys under a record");
 	chart(argv[0], argv[1], &b);

@@ -47,6 +47,7 @@ void emit_loops_of_step(const struct emitter *e, const char *const *acting_text)
 /* what a step assigns to states that are `stepped` (NULL: all), to be printed */
 struct formulas *formulas_of_step(const struct emitter *e, const bool *stepped);
 void emit_keep_inputs(const struct emitter *e, int samples);      /* of u, which has those of so many steps */
+void begin_flush(const struct emitter *e);                        /* its sizes: flush.h is what follows */
 void emit_flush(const struct emitter *e);                         /* NAME_flush, of decayed states */
 void emit_step_advance(const struct emitter *e);                  /* samples, phases and time move on */
 const char *checks_of_step(const struct emitter *e);              /* what is looked at in the state behind it */

@@ -312,16 +312,18 @@ static struct code *code_of(char *text, char *said)
 	return c;
 }
 
-struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
-		      bool quiet, char **error, int *status)
+/* plgen with `more`, NULL for none; false: *error says what is wrong */
+static bool run_plgen(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
+		      const char *more, struct said *said, char **error)
 {
-	const char **argv = need(calloc(o->passed_count + 2 * extras + 7, sizeof *argv));
+	const char **argv = need(calloc(o->passed_count + 2 * extras + 8, sizeof *argv));
 	size_t count = 0;
-	struct said said;
 	argv[count++] = t->plgen;
 	argv[count++] = "--fast";
 	argv[count++] = "--rows=1";             /* so that NAME_run has the bits of NAME_step */
-	if (o->sweep)
+	if (more)
+		argv[count++] = more;
+	else if (o->sweep)
 		argv[count++] = "--batch";
 	for (size_t i = 0; i < o->passed_count; i++)
 		argv[count++] = o->passed[i];
@@ -331,19 +333,40 @@ struct code *generate(const struct toolchain *t, const struct options *o, const 
 	}
 	argv[count++] = "--";
 	argv[count++] = o->spec;
-	*error = run_command(argv, strcmp(o->spec, "-") == 0 ? input_kept() : NULL, &said);
+	*error = run_command(argv, strcmp(o->spec, "-") == 0 ? input_kept() : NULL, said);
 	free(argv);
-	*status = WRONG_DATA;
-	if (*error)
-		return NULL;
-	if (said.status) {
+	if (*error) {
+		said->status = WRONG_DATA;
+		return false;
+	}
+	if (said->status)
+		*error = *said->err ? said->err : format("plgen ended with status %d", said->status);
+	return !said->status;
+}
+
+struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
+		      bool quiet, char **error, int *status)
+{
+	struct said said = { 0 };
+	if (!run_plgen(t, o, extra, extras, NULL, &said, error)) {
 		*status = said.status > 2 ? WRONG_DATA : said.status;
-		*error = *said.err ? said.err : format("plgen ended with status %d", said.status);
 		return NULL;
 	}
+	*status = WRONG_DATA;
 	if (!quiet)
 		say_text(said.err);
 	return code_of(said.out, said.err);
+}
+
+struct kernel *generate_kernel(const struct toolchain *t, const struct options *o, const char *const *extra,
+			       size_t extras, const char *name, char **error)
+{
+	struct said said = { 0 };
+	struct kernel *k = NULL;
+	if (run_plgen(t, o, extra, extras, "--target=opencl", &said, error))
+		k = kernel_of(said.out, name, error);
+	free(said.out);
+	return k;
 }
 
 /* ---- from C to a shared object ---- */

@@ -114,19 +114,77 @@ static void take_steps(const struct lanes *l, const double *u, uint64_t k, size_
 		stats[j].rows = k + n;
 }
 
-void lanes_run(const struct job *job, size_t count, const double *const *params, struct stats *stats, bool *done)
+/* ---- on a device ---- */
+
+struct shared {                         /* what instances share there in the next steps */
+	const struct lanes *lanes;
+	struct samples *samples;
+};
+
+static void share_steps(void *who, size_t n, double *now)
+{
+	const struct shared *s = who;
+	const pl_many *many = s->lanes->machine->many;
+	for (size_t k = 0; k < n; k += STEPS_AT_ONCE) {
+		const size_t some = n - k < STEPS_AT_ONCE ? n - k : STEPS_AT_ONCE;
+		many->share(s->lanes->b, some, samples_rows(s->samples, some), now + k * (size_t)many->shared);
+	}
+}
+
+/* Sums as the kernel has them, sum, squares in two parts, last value, from stats or to them */
+static void move_sums(const struct lanes *l, double *sum, struct stats *stats, bool back)
+{
+	const size_t count = l->count, each = (size_t)l->machine->own_outputs * count;
+	for (int i = 0; i < l->machine->outputs; i++) {
+		const size_t output = (size_t)(l->machine->shown ? l->machine->shown[i] : i);
+		for (size_t j = 0; j < count; j++) {
+			struct output_stats *of = &stats[j].of[i];
+			const size_t place = output * count + j;
+			double *const at = sum + place, *const peak = (double *)l->peak + place;
+			double *const kept[] = { &of->squares, &of->low, &of->last, &of->peak };
+			double *const there[] = { at + each, at + 2 * each, at + 3 * each, peak };
+			for (int k = 0; k < 4; k++)
+				*(back ? kept : there)[k] = *(back ? there : kept)[k];
+		}
+	}
+}
+
+/* NULL, or why it could not */
+static char *run_on_device(const struct lanes *l, const struct job *job, struct samples *samples, struct stats *stats)
+{
+	const struct machine *m = l->machine;
+	const size_t outputs = (size_t)m->own_outputs;
+	double *sum = need(calloc(4 * outputs * l->count, sizeof *sum));
+	const struct batch_arrays arrays = { l->count, (size_t)m->many->rows, (size_t)m->many->factors,
+					     (size_t)m->many->shared, outputs, l->y, l->factors, l->peak, sum };
+	move_sums(l, sum, stats, false);
+	char *error = kernel_run(m->kernel, &arrays, job->steps, share_steps, &(struct shared){ l, samples });
+	for (size_t j = 0; j < l->count && !error; j++)
+		stats[j].rows = job->steps + 1;
+	if (!error)
+		move_sums(l, sum, stats, true);
+	free(sum);
+	return error;
+}
+
+char *lanes_run(const struct job *job, size_t count, const double *const *params, struct stats *stats, bool *done)
 {
 	const struct machine *m = job->machine;
 	struct lanes l = lanes_new(m, count);
 	struct samples *samples = samples_begin(job, hold, &l);
+	char *error = NULL;
 	for (size_t j = 0; j < count; j++)
 		done[j] = tune(&l, j, params[j], &stats[j]) == 0;
-	for (uint64_t k = 1; k <= job->steps; k += STEPS_AT_ONCE) {
+	if (m->kernel)
+		error = run_on_device(&l, job, samples, stats);
+	else for (uint64_t k = 1; k <= job->steps; k += STEPS_AT_ONCE) {
 		const size_t n = job->steps - k < STEPS_AT_ONCE ? (size_t)(job->steps - k) + 1 : STEPS_AT_ONCE;
 		take_steps(&l, samples_rows(samples, n), k, n, stats);
 	}
 	for (size_t j = 0; j < count; j++)
-		done[j] = done[j] && (m->single ? m->manyf->status(l.b, j) : m->many->status(l.b, j)) == 0;
+		done[j] = !error && done[j] && stats_in_range(&stats[j]) &&
+			  (m->single ? m->manyf->status(l.b, j) : m->many->status(l.b, j)) == 0;
 	samples_end(samples);
 	lanes_free(&l);
+	return error;
 }

@@ -148,6 +148,7 @@ void machine_close(struct machine *m)
 {
 	if (m->object)
 		dlclose(m->object);
+	kernel_free(m->kernel);
 	free(m->param_values);
 	free(m);
 }

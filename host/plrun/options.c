@@ -223,6 +223,8 @@ static const struct row {
 	{ "peak", NULL, "... and the largest |value| at the ends of steps", .flag = AT(peak) },
 	{ "histories", NULL, "... its picture: every run, at most 8, one on the other", .flag = AT(histories) },
 	{ "jobs", "N", "... on N cores (default: all)", .take = take_jobs },
+	{ "device", NULL, "... steps on a device of OpenCL, where plgen has a kernel of the model; the same bytes",
+	  .flag = AT(device) },
 	{ "resume", NULL, "... going on where the same sweep was interrupted", .flag = AT(resume) },
 	{ "chart", NULL, "error against time of plgen's steps and other solvers, in the folder -o (default: charts)",
 	  .flag = AT(chart) },
@@ -440,8 +442,9 @@ static void check(const struct options *o)
 	check_look(o);
 	if (!o->spec)
 		wrong_usage("no spec is given");
-	if (!o->sweep && (o->peak || o->resume || o->jobs))
-		wrong_usage(format("%s goes with --sweep", o->peak ? "--peak" : o->resume ? "--resume" : "--jobs"));
+	if (!o->sweep && (o->peak || o->resume || o->jobs || o->device))
+		wrong_usage(format("%s goes with --sweep", o->peak ? "--peak" : o->resume ? "--resume"
+				   : o->jobs ? "--jobs" : "--device"));
 	if (o->histories && !(o->sweep && o->plot))
 		wrong_usage("--histories is a picture of a sweep: it goes with --sweep and --plot");
 	if (o->sweep && o->plot && !o->histories && (o->ranges == 0 || o->ranges > 2))

@@ -26,6 +26,7 @@
  *     record.c    a table as samples of the inputs, resampled where its times are not those of the steps
  *     run.c       steps, and what watches them
  *     lanes.c     ... of runs that differ in tunable params, side by side
+ *     device.c    ... on a device, by OpenCL
  *     show.c      which outputs and states are shown, and in which panels
  *     rows.c      the rows of a run as CSV, or as doubles
  *     plot.c      ... as a picture
@@ -128,7 +129,7 @@ struct options {
 	const char *sweep;                      /* the file, or the first range as it was given; NULL: one run */
 	struct range *range;
 	size_t ranges;                          /* 0: of the file */
-	bool peak, resume, stats, histories, units, raw;
+	bool peak, resume, stats, histories, units, raw, device;
 	const char *show;                       /* NULL: the outputs */
 	struct look look;
 	const char **fit;                       /* params and initial values, NULL-terminated; NULL: no fit */
@@ -214,6 +215,9 @@ struct code {
 	bool single;
 	char **tunable;                         /* NULL-terminated */
 };
+/* Of the same model the kernel of a device, and what it is called; NULL: why there is none */
+struct kernel *generate_kernel(const struct toolchain *t, const struct options *o, const char *const *extra,
+			       size_t extras, const char *name, char **error);
 struct code *generate(const struct toolchain *t, const struct options *o, const char *const *extra, size_t extras,
 		      bool quiet, char **error, int *status);
 bool is_tunable(const struct code *c, const char *name);
@@ -238,6 +242,7 @@ struct machine {
 	const pl_derivativesf *derivativesf;
 	const pl_many *many;                    /* NULL: runs do not go side by side; in float its pl_manyf */
 	const pl_manyf *manyf;
+	struct kernel *kernel;                  /* of a device; NULL: there is none */
 	const char *name;
 	int states, inputs, outputs, params;    /* outputs: those that are shown */
 	int plain_outputs, own_outputs;         /* of the model; with their derivatives behind them */
@@ -356,7 +361,8 @@ void record_sample(const struct record *r, double h, bool on_grid, uint64_t k, s
 
 struct output_stats {
 	double last, least, most, peak;         /* peak: the largest |value| */
-	long double sum, squares;               /* so that squares of large values stay finite */
+	double squares, low;                    /* their sum, in two parts: the same bits on every machine and device */
+	long double sum, wide;                  /* wide: of squares that no double has, by stats_add alone */
 	uint64_t peak_at;                       /* the first row that has it */
 };
 struct stats {                          /* of a run */
@@ -370,6 +376,7 @@ struct stats stats_new(int outputs);
 void stats_column(struct stats *s, int output, uint64_t k, size_t rows, const double *value, size_t apart);
 void stats_add(void *who, uint64_t k, const double *out);
 double stats_rms(const struct stats *s, int output);
+bool stats_in_range(const struct stats *s);             /* do all have the sum of squares without `wide`? */
 /* crossed: breakpoints; it counts where the machine counts them */
 void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed);
 
@@ -400,8 +407,23 @@ void samples_end(struct samples *s);
 /* ---- lanes.c ---- */
 
 bool machine_has_lanes(const struct machine *m);
-/* A run like the job for each set of params, to `stats`; done: false where it takes a run alone to say what is wrong */
-void lanes_run(const struct job *job, size_t count, const double *const *params, struct stats *stats, bool *done);
+/* A run like the job for each set of params, to `stats`; done: false where it takes a run alone to say what is wrong.
+ * Returns why a device that is wanted has done none, or NULL */
+char *lanes_run(const struct job *job, size_t count, const double *const *params, struct stats *stats, bool *done);
+
+/* ---- device.c ---- */
+
+struct kernel;
+enum { STEPS_ON_DEVICE = 16 * STEPS_AT_ONCE };  /* at a time */
+struct batch_arrays {                   /* of NAME_instances and NAME_kernel, and how long */
+	size_t count, rows, factors, shared, outputs;
+	double *y, *factor, *peak, *sum;
+};
+struct kernel *kernel_of(const char *text, const char *name, char **error);    /* NULL: why there is none */
+void kernel_free(struct kernel *k);
+/* share: writes what all instances share in the next n steps. Returns NULL, or how it went wrong */
+typedef void shared_rows(void *who, size_t n, double *now);
+char *kernel_run(const struct kernel *k, const struct batch_arrays *a, uint64_t steps, shared_rows *share, void *who);
 
 /* ---- rows.c, plot.c: what watches a run ---- */
 
@@ -499,7 +521,7 @@ struct variant {
 	pthread_mutex_t busy;
 	bool tried;
 	struct machine *machine;                /* NULL, tried: `error` */
-	char *error;
+	char *error, *no_kernel;                /* no_kernel: why, where one is wanted */
 };
 
 struct param {
@@ -526,6 +548,8 @@ struct sweep {
 	size_t drawn_length;
 	FILE *to_draw;                          /* NULL: there is none */
 	size_t written, done, before, failed;   /* before: done when it began */
+	size_t host_runs, host_run;             /* of those wanted on a device; the first of them, and why */
+	const char *host_why;
 };
 
 const char *sweep_value(const struct sweep *s, size_t row, size_t param);       /* as it is printed */

@@ -14,17 +14,19 @@ struct stats stats_new(int outputs)
 void stats_column(struct stats *stats, int output, uint64_t k, size_t rows, const double *value, size_t apart)
 {
 	struct output_stats *s = &stats->of[output];
-	long double squares = s->squares;
-	double peak = k == 0 ? fabs(value[0]) : s->peak;
+	double squares = s->squares, low = s->low, peak = k == 0 ? fabs(value[0]) : s->peak;
 	for (size_t i = 0; i < rows; i++) {
-		const double now = value[i * apart], size = fabs(now);
-		squares += (long double)now * (long double)now;
+		const double now = value[i * apart], size = fabs(now), square = now * now;
+		const double whole = squares + square, part = whole - squares;
+		low += (squares - (whole - part)) + (square - part);
+		squares = whole;
 		if (size > peak) {
 			peak = size;
 			s->peak_at = k + i;
 		}
 	}
 	s->squares = squares;
+	s->low = low;
 	s->peak = peak;
 	s->last = value[(rows - 1) * apart];
 }
@@ -36,15 +38,32 @@ void stats_add(void *who, uint64_t k, const double *out)
 		struct output_stats *s = &stats->of[i];
 		stats_column(stats, i, k, 1, out + i, 1);
 		s->sum += (long double)out[i];
+		s->wide += (long double)out[i] * (long double)out[i];
 		s->least = k == 0 || out[i] < s->least ? out[i] : s->least;
 		s->most = k == 0 || out[i] > s->most ? out[i] : s->most;
 	}
 	stats->rows = k + 1;
 }
 
+/* Are squares of its values neither above the range of doubles nor all but below it? */
+static bool in_range(const struct output_stats *s)
+{
+	return isfinite(s->squares) && (s->peak > 0x1p-450 || s->peak == 0);
+}
+
+bool stats_in_range(const struct stats *s)
+{
+	bool all = true;
+	for (int i = 0; i < s->outputs; i++)
+		all = all && in_range(&s->of[i]);
+	return all;
+}
+
 double stats_rms(const struct stats *s, int output)
 {
-	return (double)sqrtl(s->of[output].squares / (long double)s->rows);
+	const struct output_stats *of = &s->of[output];
+	return in_range(of) ? sqrt((of->squares + of->low) / (double)s->rows)
+			    : (double)sqrtl(of->wide / (long double)s->rows);
 }
 
 void stats_print(FILE *to, const struct stats *stats, const struct machine *m, double h, uint64_t crossed)

@@ -211,9 +211,9 @@ static void print_line(FILE *to, const struct sweep *s, size_t row, const struct
 	putc('\n', to);
 }
 
-/* Rows side by side; done: those of which stats are known */
-static void run_rows(struct sweep *s, const size_t *row, size_t count, const struct machine *m, struct stats *stats,
-		     bool *done)
+/* Rows side by side; done: those of which stats are known. Returns why a device has not made them, or NULL */
+static char *run_rows(struct sweep *s, const size_t *row, size_t count, const struct machine *m, struct stats *stats,
+		      bool *done)
 {
 	double **params = need(calloc(count, sizeof *params));
 	struct job job;
@@ -223,11 +223,25 @@ static void run_rows(struct sweep *s, const size_t *row, size_t count, const str
 		all = all && !error && job.params && job.h == m->h;
 		free(error);
 	}
-	if (all)
-		lanes_run(&job, count, (const double *const *)params, stats, done);
+	char *why = !all ? format("their steps are not one")
+		  : lanes_run(&job, count, (const double *const *)params, stats, done);
 	for (size_t i = 0; i < count; i++)
 		free(params[i]);
 	free(params);
+	return why;
+}
+
+/* Of runs that were wanted on a device */
+static void note_host(struct sweep *s, size_t row, size_t count, const char *why)
+{
+	static pthread_mutex_t busy = PTHREAD_MUTEX_INITIALIZER;
+	pthread_mutex_lock(&busy);
+	if (s->host_runs == 0 || row < s->host_run) {
+		s->host_run = row;
+		s->host_why = why;
+	}
+	s->host_runs += count;
+	pthread_mutex_unlock(&busy);
 }
 
 static char *line_of(struct sweep *s, size_t row, const struct machine *m, struct stats *stats, bool done)
@@ -251,10 +265,15 @@ static void make_lines(struct sweep *s, const size_t *row, size_t count, char **
 	struct stats *stats = need(calloc(count, sizeof *stats));
 	bool *done = need(calloc(count, sizeof *done));
 	const struct machine *m = take_variant(s, v);
+	const char *why = v->no_kernel ? v->no_kernel : "a model of its own";
 	for (size_t i = 0; i < count; i++)
 		stats[i] = stats_new(s->machine->outputs);
-	if (m && count > 1 && machine_has_lanes(m))
-		run_rows(s, row, count, m, stats, done);
+	if (m && count > 1 && machine_has_lanes(m)) {
+		char *error = run_rows(s, row, count, m, stats, done);
+		why = error || m->kernel ? error : why;
+	}
+	if (m && s->options->device && why)
+		note_host(s, row[0], count, why);
 	for (size_t i = 0; i < count; i++) {
 		line[i] = line_of(s, row[i], m, &stats[i], done[i]);
 		leave_variant(v);
@@ -264,13 +283,24 @@ static void make_lines(struct sweep *s, const size_t *row, size_t count, char **
 	free(done);
 }
 
+/* line: NULL, each; rows of one variant go together, wherever they stand */
 void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line)
 {
-	for (size_t i = 0, n; i < count; i += n) {
-		for (n = 1; i + n < count && s->variant_of[row[i + n]] == s->variant_of[row[i]]; n++)
-			;
-		make_lines(s, row + i, n, line + i);
+	size_t *some = need(calloc(2 * count, sizeof *some)), *place = some + count;
+	char **made = need(calloc(count, sizeof *made));
+	for (size_t i = 0, n = 0; i < count; i++, n = 0) {
+		for (size_t k = i; k < count && !line[i]; k++)
+			if (s->variant_of[row[k]] == s->variant_of[row[i]]) {
+				some[n] = row[k];
+				place[n++] = k;
+			}
+		if (n)
+			make_lines(s, some, n, made);
+		for (size_t k = 0; k < n; k++)
+			line[place[k]] = made[k];
 	}
+	free(some);
+	free(made);
 }
 
 /* ---- the runs in a picture, once more: a line keeps none of its rows ---- */
@@ -466,6 +496,9 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 		return 0;
 	progress_end();
 	journal_end(s.journal);
+	if (s.host_runs)
+		say_note(format("--device: %zu of %zu runs were on the host, the first of them run %zu: %s",
+				s.host_runs, s.rows, s.host_run + 1, s.host_why));
 	if (s.to_draw)
 		fclose(s.to_draw);
 	if (o->histories)

@@ -91,6 +91,21 @@ static size_t definitions_of(const struct sweep *s, const char **definition)
 	return count;
 }
 
+/* Where runs are wanted on a device */
+static void add_kernel(const struct sweep *s, struct variant *v, const struct options *with,
+		       const char *const *definition, size_t count)
+{
+	struct machine *m = v->machine;
+	if (m->single)
+		v->no_kernel = format("sums of squares of a model in float are in double");
+	else if (!machine_has_lanes(m))
+		v->no_kernel = format("no param of the model is tunable, or states are shown");
+	else
+		m->kernel = generate_kernel(s->tools, with, definition, count, m->name, &v->no_kernel);
+	if (v->no_kernel)
+		v->no_kernel = first_line(v->no_kernel);
+}
+
 void build_variant(const struct sweep *s, struct variant *v)
 {
 	const struct options *o = s->options;
@@ -109,6 +124,8 @@ void build_variant(const struct sweep *s, struct variant *v)
 		v->machine = machine_of(s->tools, c, &v->error);
 		if (v->machine)
 			machine_show(v->machine, s->machine->view, o);
+		if (v->machine && o->device && v->left > 1)
+			add_kernel(s, v, &with, definition, count);
 		free(c->text);
 		free(c->said);
 		free(c);

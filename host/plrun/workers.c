@@ -13,7 +13,7 @@
 #include <mpi.h>
 #endif
 
-enum { LINES_AT_ONCE = 64 };
+enum { LINES_AT_ONCE = 64, LINES_ON_DEVICE = 1 << 14 };
 
 struct share {
 	struct workers workers;
@@ -135,19 +135,22 @@ static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
 	if (jobs > 1)
 		wrong_usage("this plrun was built without OpenMP: one job at a time");
 #endif
-	const size_t each = count / (size_t)threads / 4 + 1, some = each < LINES_AT_ONCE ? each : LINES_AT_ONCE;
+	const bool device = s->sweep->options->device;
+	const size_t each = device ? count / (size_t)threads + 1 : count / (size_t)threads / 4 + 1;
+	const size_t most = device ? LINES_ON_DEVICE : LINES_AT_ONCE, some = each < most ? each : most;
 #ifdef _OPENMP
 #pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
 #endif
 	for (size_t i = 0; i < count; i += some) {
 		const size_t n = count - i < some ? count - i : some;
-		char *line[LINES_AT_ONCE];
+		char **line = need(calloc(n, sizeof *line));
 		sweep_lines(s->sweep, own + i, n, line);
 		for (size_t k = 0; k < n; k++)
 #ifdef _OPENMP
 #pragma omp critical(hand_over)
 #endif
 			hand_over(s, own[i + k], line[k]);
+		free(line);
 	}
 }
 

@@ -74,6 +74,8 @@ refuses 'a param twice' 2 "plrun: error: 'k' is given twice
 $usage" swing.spec 1 -D k=1 -D k=2
 refuses 'jobs' 2 "plrun: error: --jobs takes a number from 1 to 4096, found '0'
 $usage" swing.spec 1 --sweep s.csv --jobs 0
+refuses 'a device of one run' 2 "plrun: error: --device goes with --sweep
+$usage" swing.spec 1 --device
 refuses 'jobs of one run' 2 "plrun: error: --jobs goes with --sweep
 $usage" swing.spec 1 --jobs 2
 refuses 'a picture of a sweep' 2 "plrun: error: --plot draws a sweep over one range, or two, or its --histories

@@ -90,6 +90,38 @@ for options in '--real double' '--real float' '--show thrust,x' '--show x,y' '--
 	same expected found "side by side, $spec $options"
 done
 
+# ---- on a device: the same bytes; what it does not take is named ----
+export POCL_CACHE_DIR="$PWD"
+printf 'c,k\n' >grid.csv
+awk 'BEGIN { for (i = 0; i < 24; i++) print 0.1 * (i % 2 + 1) "," 80 + i }' >>grid.csv
+sed -e 's/, worst = .*//' -e 's/^tunable.*/tunable k/' forced.spec >device.spec
+for options in '--jobs 1' '--show thrust,x'; do
+	# shellcheck disable=SC2086
+	run device.spec 15 --input u.csv $options --sweep grid.csv --peak >host.csv
+	# shellcheck disable=SC2086
+	run device.spec 15 --input u.csv $options --sweep grid.csv --peak --device >device.csv
+	same host.csv device.csv "on a device, $options"
+	if grep -q 'without OpenCL\|OpenCL has no device' said; then
+		skip 'on a device: all runs are' 'OpenCL: ocl-icd-opencl-dev, pocl-opencl-icd'
+	else
+		cp said log
+		[ ! -s said ]
+		result $? 'on a device: all runs are'
+	fi
+done
+run forced.spec 15 --input u.csv --sweep k=80:90:3 --device >device.csv
+cp said log
+grep -q '^note: --device: 3 of 3 runs were on the host, the first of them run 1: .*peaks are looked for' said
+result $? 'a model that no device takes is named'
+for size in 1 1e160 1e-160; do
+	printf 'model large\nparam k = 4\ntunable k\ncoord x\ninit x = %s\n%s\nstep 0.1\n' $size "x'' + k*x = 0" \
+		>large.spec
+	run large.spec 15 --sweep k=1:4:4 --device | awk -F, -v size=$size '{ print $5 / size, $NF }' OFMT=%.12g
+done >log
+awk 'NR % 5 != 1 { if (NR < 6) rms[NR % 5] = $1; else if ($1 != rms[NR % 5]) bad = 1; if ($2 != "ok") bad = 1 }
+	END { exit bad || NR != 15 || !(rms[2] > 0.6 && rms[2] < 0.8) }' log
+result $? 'squares that no double has'
+
 # ---- ranges: as the table of their values ----
 printf 'k,m\n12000,250\n12000,300\n12000,350\n16000,250\n16000,300\n16000,350\n20000,250\n20000,300\n20000,350\n' \
 	>grid.csv
@@ -268,6 +300,8 @@ if ! command -v mpirun >/dev/null; then
 elif $mpi "$plrun" car.spec --input road.csv --sweep params.csv --peak >mpi.csv 2>log; [ -s mpi.csv ] ||
 	! grep -q 'built without MPI' log; then
 	same one.csv mpi.csv 'MPI: 2 processes and 1'
+	$mpi "$plrun" car.spec --input road.csv --sweep params.csv --peak --device >mpi.csv 2>log
+	same one.csv mpi.csv 'MPI: 2 processes on a device'
 	"$plrun" car.spec --input long.csv --sweep many.csv >part.csv 2>log &
 	pid=$!
 	kill_in_the_middle

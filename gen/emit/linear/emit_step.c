@@ -154,12 +154,9 @@ static void emit_plain_step(const struct emitter *e)
 	emit_loops_of_step(e, acting_texts(e));
 }
 
-/* Before the steps that call it */
-void emit_flush(const struct emitter *e)
+void begin_flush(const struct emitter *e)
 {
 	const struct denormal_flush *flush = e->step->linear.flush;
-	if (!flush)
-		return;
 	if (flush->parts > 1) {
 		say(e, "\n/* Which part each state is of: no other state acts on it */\n");
 		emit_integers(e, "short", "flush_part", e->system->states, flush->part);
@@ -167,6 +164,14 @@ void emit_flush(const struct emitter *e)
 	emit_sizes(e, "flush.h", { "STATES", e->system->states }, { "FLUSHES", flush->parts },
 		   { "DECAYING", flush->decaying }, { "FLUSHES_BESIDE", flush->beside },
 		   { "COMPENSATED", e->step->program->compensated });
+}
+
+/* Before the steps that call it */
+void emit_flush(const struct emitter *e)
+{
+	if (!e->step->linear.flush)
+		return;
+	begin_flush(e);
 	say(e, "#include \"flush.h\"\n");
 }
 

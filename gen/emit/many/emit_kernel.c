@@ -20,6 +20,21 @@ static void check_kernel(const struct emitter *e, const char *target)
 		error(e->model->spec->name_at, "--batch steps any model", "--target %s: %s", target, why);
 }
 
+/* NAME_flush, on what an instance keeps of its states */
+static void emit_kernel_flush(const struct emitter *e, const char *function, const char *bits)
+{
+	const char *low = e->step->program->compensated ? format(", low[%d]", e->system->states) : "";
+	if (!e->step->linear.flush)
+		return;
+	say(e, "typedef struct $n_flushed { double y[%d]%s; } $n_flushed;\n", e->system->states, low);
+	begin_flush(e);
+	say_macro(e, "TYPE", spell(e, "$n_flushed"));
+	say_macro(e, "APART", "");
+	say_macro(e, "FLUSH_FUNCTION", function);
+	say_macro(e, "FLUSH_BITS", bits);
+	say(e, "#include \"flush.h\"\n");
+}
+
 void emit_kernel(const struct emitter *e, const char *target)
 {
 	const bool opencl = strcmp(target, "opencl") == 0, cuda = strcmp(target, "cuda") == 0;
@@ -40,9 +55,14 @@ void emit_kernel(const struct emitter *e, const char *target)
 	    opencl ? "OpenCL" : cuda ? "CUDA" : "OpenMP", cuda ? " (nvcc -fmad=false)" : "",
 	    opencl && !e->model->request.single ? "#pragma OPENCL EXTENSION cl_khr_fp64 : enable\n" : "",
 	    opencl ? words_of_opencl : cuda ? words_of_cuda : words_of_openmp);
+	say(e, "%s", openmp ? "#pragma omp declare target\n" : "");
+	emit_kernel_flush(&on_device, cuda ? "__device__" : "", e->model->request.single ? "unsigned"
+			  : opencl ? "ulong" : "unsigned long long");
+	say(e, "%s", openmp ? "#pragma omp end declare target\n" : "");
 	emit_sizes(e, "kernel.h", { "STATES", e->system->states }, { "OVER", steps_of_series(e) },
 		   { "STEPPED", batch_stepped_rows(e) }, { "OUTPUTS", e->model->outputs },
-		   { "SHARED", b.shared }, { "LANES", b.lanes }, { "OPENCL", opencl }, { "CUDA", cuda });
+		   { "SHARED", b.shared }, { "LANES", b.lanes }, { "OPENCL", opencl }, { "CUDA", cuda },
+		   { "FLUSHES", e->step->linear.flush != NULL });
 	say(e, "#include \"kernel.h\"\n");
 	say(e, "%s", openmp ? "#pragma omp declare target\n" : "");
 	if (has_series(e))
