@@ -29,5 +29,5 @@ for file in $files; do
 	sed "1s|^[^:]*:|$archive:|" "$object.d" >>"$depfile"
 done
 rm -f "$archive"
-ar rcsD "$archive" "$work"/*.o
+"$ar" rcsD "$archive" "$work"/*.o
 finish_archive "$archive" "$work"

@@ -9,6 +9,9 @@ if command -v tcc >/dev/null 2>&1; then
 else
 	run_cc="${CC:-cc} -std=gnu11 -O0 -ffp-contract=off -w"
 fi
+# By themselves these load every plugin of the machine, LLVM's too, which takes 30 times as long as their work.
+ar=$(command -v gcc-ar || echo ar)
+nm=$(command -v gcc-nm || echo nm)
 
 # finish_archive ARCHIVE FOLDER: of objects by run_cc, in the current folder's terms, that another compiler's linker
 # takes. Those of tcc need its own library, and do not say that their stack is not for code. FOLDER: for what is passing
@@ -17,9 +20,9 @@ finish_archive() {
 	mkdir "$2/library"
 	(
 		library=$(tcc -print-search-dirs | sed -n '/^libtcc1:/{n;s/^ *//p;}')
-		cd "$2/library" && ar x "$library"
+		cd "$2/library" && "$ar" x "$library"
 	)
-	ar rcsD "$1" "$2"/library/*.o
+	"$ar" rcsD "$1" "$2"/library/*.o
 	objcopy --add-section .note.GNU-stack=/dev/null \
 		--set-section-flags .note.GNU-stack=contents,readonly "$1"
 }

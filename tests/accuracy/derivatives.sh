@@ -556,6 +556,7 @@ if [ $made -eq 0 ]; then
 		result $? "events of random model $seed, in two words"
 	done
 	for seed in 282 301; do
+		merging || [ $seed = 282 ] || continue
 		judged_events spec $seed >log 2>&1
 		result $? "events of random model $seed, at rest on a breakpoint"
 	done

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: every row of the covering array is made and agrees with other
-# roads, every fourth set that gen/model/capability.def refuses, with MERGE=1 or LONG=1 in the environment every one, is
-# refused with its message, as TAP; and doc/combinations.md is what comes out of these. Of the C every 18th row has
-# sanitizers, with MERGE=1 every sixth; with LONG=1 all have, optimised.
+# combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE: the first 54 rows of the covering array are made and agree
+# with other roads, every fourth set that gen/model/capability.def refuses is refused with its message, with MERGE=1 or
+# LONG=1 in the environment all rows and all sets, as TAP; and doc/combinations.md is what comes out of these. Of the C
+# every 18th row has sanitizers, with MERGE=1 every sixth; with LONG=1 all have, optimised.
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --pairs     prints the pairs that plgen refuses
 #     combinations.sh PLGEN COVERING ARCHIVE_GCC SOURCE --table     prints doc/combinations.md
 set -u
@@ -102,6 +102,7 @@ every=18
 batch_new
 number=0
 "$covering" rows "$list" >rows || exit 99
+merging || { head -n 54 rows >first && mv first rows; }         # each has fewer sets that are new than the one before
 while read -r row; do
 	number=$((number + 1))
 	# shellcheck disable=SC2086
@@ -109,7 +110,7 @@ while read -r row; do
 	batch_add "r$number" "r$number.spec"
 	[ "$said" != made ] || ! one_of 9 || is_program "r$number"
 	[ "$said" = refused ] && cp "r$number.said" "r$number.wrong"
-	[ "$said" != made ] || stands_aside "r$number"
+	[ "$said" != made ] || ! one_of 3 || stands_aside "r$number"
 	for function in at jump; do
 		case " $row " in
 			*" $function "*)

@@ -82,7 +82,7 @@ EOT
 
 # own_names OBJECT: what it shows beside names of its own
 own_names() {
-    nm "$1" | grep -E ' ([A-TV-Z] |U pl_)' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
+    "$nm" "$1" | grep -E ' ([A-TV-Z] |U pl_)' | grep -v -E ' ([A-TV-Z] _?scene_|V DW\.ref\.__gxx_personality)' >>log
 }
 
 # warns: what the compilers say of model.c
@@ -147,7 +147,7 @@ bundles 'impacts' "$root/models/bouncing_ball.spec"
 bundles 'delays' "$(path_of tests/delays/echo.spec)"
 bundles 'tunable' "$(path_of tests/tunable/changes.spec)"
 bundles 'many instances' "$root/models/quarter_car.spec" --batch
-bundles 'a remainder' "$root/models/beam4.spec" --scheme etdrk4
+bundles 'a remainder' "$root/models/quad2dof.spec" --scheme etdrk4
 bundles 'series' "$root/models/pendulum.spec"
 bundles 'stiff' "$root/models/vanderpol_stiff.spec" --scheme radau
 bundles 'friction by series' "$(path_of tests/contacts/rubbed.spec)" --tolerance 1e-5
@@ -222,7 +222,7 @@ small_runtime() {
         [ -e "small/$name.o" ] || ${CC:-cc} -Os -I"$root/runtime" -c "$root/runtime/$name.c" -o "small/$name.o" 2>>log
     done
     rm -f plrt.a
-    ar rcs plrt.a small/*.o
+    "$ar" rcs plrt.a small/*.o
 }
 for spec in sdcsf pendulum quarter_car_bumps; do
     for real in double float; do

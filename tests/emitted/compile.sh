@@ -106,13 +106,13 @@ needs() {
     # shellcheck disable=SC2046
     (cd "$folder" && "$compiler" -std=c99 "$level" -I"$root/runtime" -c $(printf '%s.c\n' "$@")) >said 2>&1
     status=$?
-    nm -u "$folder"/*.o >names && only_runtime names || status=1
+    "$nm" -u "$folder"/*.o >names && only_runtime names || status=1
     cat said >>log
     result $status "$title, $compiler $level"
 }
 
 if ! merging; then
-    nm -u "$archive" >names && only_runtime names
+    "$nm" -u "$archive" >names && only_runtime names
     result $? 'runtime: needs memcpy and memset at most, as it was built'
     compiler=${GCCS:-gcc} level=-O2
     compiler=${compiler% *}
@@ -405,6 +405,7 @@ alike() {
     always=
     set -- $locals $macros $functions
     while [ $# -ge 6 ]; do
+        one_of 2 || { shift 6; continue; }
         as_coordinates "$1" "$2" "$3" "$4" "$5" "$6" >names.spec
         as_coordinates n1 n2 n3 n4 n5 n6 >neutral.spec
         alike probe neutral.spec "coordinates $1, $2, $3, $4, $5, $6"

@@ -45,7 +45,7 @@ compiles() {
 
 # only_runtime OBJECT: does it name anything but pl_*, memcpy, memset, and what tcc has for assignments and conversions?
 only_runtime() {
-    nm -u "$1" | awk '{ print $NF }' |
+    "$nm" -u "$1" | awk '{ print $NF }' |
         grep -v -E '^(pl_[a-z_]*|mem(cpy|set|move)|__(float|fix)un[a-z]*|_GLOBAL_OFFSET_TABLE_)$' >>log
     [ ! -s log ]
 }
@@ -99,12 +99,12 @@ for m in $(cat names); do
         [ $kind = reduce ] || compiles "$kind/twice.c" "$m, $kind: the header stands alone, twice"
         status=0
         : >log
-        # one of three in turn by a compiler that is told so, the others to be run; with LONG=1 by each
+        # one of six in turn by a compiler that is told so, the others to be run; with LONG=1 by each
         turn=$((turn + 1))
         told="$warnings -ffreestanding"
         if long; then
             sed 's/$/ -O1/' compilers >some
-        elif [ $((turn % 3)) -eq 0 ]; then
+        elif [ $((turn % 6)) -eq 0 ]; then
             sed '1{s/$/ -O0/;q;}' compilers >some
         else
             told=

@@ -65,15 +65,15 @@ add power
 pair plain 'cos(968*t)'
 add plain
 pair direct 't^4*cos(968*t)'
-add direct --form direct
+! merging || add direct --form direct
 pair compensated 't^4*cos(968*t) + t'
 add compensated --accuracy compensated
 pair growing 't^2*exp(-0.2*t)*cos(500*t) + 0.001*cos(2*t)'
 add growing
 pair accelerations 't^4*cos(968*t)' "output x1, x1'', x2', d = x2 - x1"
-add accelerations
+! merging || add accelerations
 pair driven 'u + t^3*cos(700*t)' 'input u'
-add driven
+! merging || add driven
 pair ramped 'u + t^3*cos(700*t)' 'input u hold first'
 add ramped
 pair changing '(t < 3.003 ? t^4*cos(968*t) : t < 5.0071 ? 0 : t^2*sin(400*t))'
@@ -83,7 +83,7 @@ add doubled
 pair passing 't^4*cos(968*t) + (t < 3.003 ? 0 : 1e-9*(t - 3.003))'
 add passing
 pair passing_driven 'u + (t < 4 ? t^4*cos(968*t) : (1 + 1e-9)*t^4*cos(968*t))' 'input u'
-add passing_driven --form delta
+! merging || add passing_driven --form delta
 pair passing_compensated 't^4*cos(968*t) + (t < 4 ? 0 : 1e-9)' "output d = x1 - x2, x2'', x1', x2"
 add passing_compensated --accuracy compensated
 cat >kicked.spec <<-END
@@ -127,7 +127,7 @@ add chain
 chain chain_passing "(t < 8.3057 ? $fast : t < 11.06 ? 0.3*$fast : 0)"
 add chain_passing
 chain reads "$fast" "output x4, x1, x3', d = x3 - x4, x4'', x2"
-add reads
+! merging || add reads
 chain reads_passing "(t < 8.3057 ? $fast : 1.001*$fast)" "output x4, d = x3 - x4, x4'', x2"
 ! merging || add reads_passing
 chain whole "$fast" "output x1, d = log(exp(x2 - x3))"
@@ -144,7 +144,7 @@ awk 'BEGIN {
 			(i == 10 ? "" : " - x" i + 1), (i == 1 ? "t^3*cos(700*t)" : 0)
 	print "step 0.01"
 }' >large.spec
-add large
+! merging || add large
 sed -e 's/^model large/model large_passing/' -e 's/= t^3.*/= t^3*cos(700*t) + (t < 2.5 ? 0 : 1e-8*(t - 2.5))/' \
 	large.spec >large_passing.spec
 ! merging || add large_passing --form delta

@@ -439,7 +439,7 @@ batch_build() {
 		done <"compiled_$cc.list"
 		# those by run_cc as an archive, of which the linker takes what belongs to a program
 		rm -rf run_only.a passing && mkdir passing
-		xargs ar rcsD run_only.a <run_only.list && finish_archive run_only.a passing
+		xargs "$ar" rcsD run_only.a <run_only.list && finish_archive run_only.a passing
 		objects=$(echo "$objects" | sed 's/\.c\>/.o/g' | tr ' ' '\n' | grep -v -x -F -f run_only.list)
 		# shellcheck disable=SC2086
 		$cc -std=gnu11 $level -w $sanitizers -I. -I"$source/tests/fuzz" -I"$source/runtime" "subjects_$cc.c" \

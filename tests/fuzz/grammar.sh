@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every second spec of the file CORPUS, with CASE,
+# grammar.sh PLGEN GRAMMAR ARCHIVE_GCC SOURCE FIRST COUNT [CORPUS]: every third spec of the file CORPUS, with CASE,
 # MERGE=1 or LONG=1 in the environment every one, then the specs that GRAMMAR, `grammar` or `scenes`, makes of COUNT
 # seeds from FIRST on, STRIDE apart, as TAP: a line for each spec of the corpus, and for each block of seeds.
-# What is emitted is compiled to be run, every third with all warnings as errors and sanitizers; with MERGE=1 or LONG=1
+# What is emitted is compiled to be run, every sixth with all warnings as errors and sanitizers; with MERGE=1 or LONG=1
 # all have sanitizers, by gcc and clang in turn; and drive.c holds it against other roads. A spec may be refused only
 # with a message of refusals.list.
 set -u
@@ -20,7 +20,7 @@ keep=${KEEP:-}
 [ -z "$keep" ] || keep=$(realpath "$keep")
 . "$source/tests/tap.sh"
 . "$source/tests/fuzz/batch.sh"
-merging || every=3
+merging || every=6
 block=25
 made=0
 refused=0
@@ -61,7 +61,7 @@ cp -R "$source/tests/fuzz/corpus/parts" .
 if [ -n "$corpus" ]; then
 	batch_new
 	awk -f "$source/tests/cases.awk" "$corpus" >names
-	merging || [ -n "${CASE:-}" ] || { awk 'NR % 2' names >half && mv half names; }
+	merging || [ -n "${CASE:-}" ] || { awk 'NR % 3 == 1' names >half && mv half names; }
 	names=$(cat names)
 	for name in $names; do
 		batch_add "c_$name" "$name.spec"

@@ -284,6 +284,7 @@ for name in $(cases); do
 	chosen "$name" || continue
 	[ "$mode" = --page ] || long || ! has "$name" long || continue
 	[ "$mode" = --page ] || merging || ! has "$name" merge || continue
+	[ "$mode" = --page ] || one_of 2 || continue
 	try "$name" >>tried
 done
 print_page >page

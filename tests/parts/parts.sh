@@ -32,7 +32,7 @@ is_flat() {
 
 while read -r scene options; do
     # shellcheck disable=SC2086
-    [ -z "$scene" ] || is_flat "$scene" $options
+    [ -z "$scene" ] || ! one_of 2 || is_flat "$scene" $options
 done <<'END'
 models/half_car.spec
 models/half_car.spec --rhs

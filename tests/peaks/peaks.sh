@@ -22,7 +22,7 @@ finds() {
 
 finds peaks ''
 # what is tuned finds values between steps by a matrix of two words
-finds tuned "-DTUNED $([ -n "${LONG:-}" ] || echo -DSTEPS=150)"
+finds tuned "-DTUNED $([ -n "${LONG:-}" ] || echo -DSTEPS=75)"
 if [ -n "${LONG:-}" ]; then
     finds peaks '' --step 0.01
     finds peaks '' --step 0.2

@@ -7,7 +7,7 @@
 . "${0%/*}/begin.sh"
 python=
 for one in python3 /usr/bin/python3; do         # the distribution's may not be the first in PATH
-	[ -n "$python" ] || ! "$one" -c 'import scipy.signal' 2>/dev/null || python=$one
+	[ -n "$python" ] || ! "$one" -c 'import scipy' 2>/dev/null || python=$one
 done
 if [ -z "$python" ]; then
 	skip scipy 'no python3-scipy'

@@ -248,10 +248,11 @@ for tuned in ('', 'tunable k\n'):
          m.units.inputs == {'u': 'N'} and m.explain['K'] == [[36000]] and m.params['k'] == 36,
          (m.units, m.params, m.explain['K']))
 case('a model without units has none', set(Model('held.spec').units.values()) == {None}, Model('held.spec').units)
+compiler = os.environ.get('CC', 'cc')
 os.environ['CC'] = 'no-such-compiler'
 refuses('a compiler that is not there', "there is no compiler 'no-such-compiler'; CC names another",
         lambda: model('sdcsf'))
-del os.environ['CC']
+os.environ['CC'] = compiler
 header = open(os.path.join(root, 'runtime', 'plrt.h')).read()
 version = int(re.search(r'PL_MODEL_VERSION = (\d+)', header).group(1))
 case('its descriptor is that of plrt.h', version == plgen.VERSION, version)

@@ -104,7 +104,7 @@ only() {
         return
     fi
     # tcc: memmove of an assignment, a conversion of its own library
-    nm -u model.o | awk '{ print $NF }' |
+    "$nm" -u model.o | awk '{ print $NF }' |
         grep -v -E '^(pl_[a-z_]*|mem(cpy|set|move)|__floatun[sd]i[sd]f|_GLOBAL_OFFSET_TABLE_)$' | sort >found
     : >expected
     [ $# -eq 0 ] || printf '%s\n' "$@" | sort >expected

@@ -3,7 +3,7 @@
 # bits.sh PLGEN INSIDE SOURCE_ROOT: the C of models, run inside the generator and compiled: the same bits, of each
 # scheme and both types, in float every second by turns. Every eighteenth is compiled by another compiler than the
 # generator has inside, whose bits `compilers` holds against others. With LONG=1 in the environment all are, optimised,
-# and all in float too; in `make check` half of all that.
+# and all in float too; in `make check` a third of all that.
 inside=$(realpath "$2")
 root=$3
 . "${0%/*}/../plgen.sh"
@@ -17,7 +17,7 @@ case $here in /*) ;; *) here=$root/tests/run ;; esac
 same() {
 	what="${1##*/} ${4:-} $3"
 	taken=no
-	one_of 2 || return 0
+	one_of 3 || return 0
 	chosen "$what" || return 0
 	taken=yes
 	name=$(sed -n 's/^model *\([a-z0-9_]*\).*/\1/p' "$1")

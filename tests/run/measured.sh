@@ -135,10 +135,10 @@ merging && meets duffing x 1e-5 60 yes --scheme etdam4
 merging && meets duffing x '0.5 %' 30 yes
 long && meets duffing x 1e-3 30 yes --real float
 merging && meets shaken a 1e-4 30 yes
-meets clearance x 1e-3 40 yes
+merging && meets clearance x 1e-3 40 yes
 merging && meets clearance x 1e-6 10 yes --scheme exact
 merging && meets clearance x 1e-3 40 yes --scheme etdrk4
-meets lorenz x 1e-3 5 no
+merging && meets lorenz x 1e-3 5 no
 meets mathieu x 1e-5 30 yes
 meets driven x 1e-4 '20 for |u| <= 0.7' no
 long && meets driven x 1e-9 '10 for |u| <= 0.7' no

@@ -68,7 +68,7 @@ beside() {
 }
 beside 5 "$one" 3 '5 stops'
 ! merging || beside 4 "$two" 4 '4 stops on both sides'
-beside 4 "$rubs" 8 '4 masses on belts'
+! merging || beside 4 "$rubs" 8 '4 masses on belts'
 ! merging || beside 4 "$slides" 8 '4 sliders without mass'
 if merging; then
 	stops many 12 "$rubs" && run many 0.3

@@ -103,7 +103,7 @@ for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
     if "$plgen" -o model.c "$root/models/$name.spec" >log 2>&1 &&
         $run_cc -I"$root/runtime" -c model.c -o model.o >>log 2>&1; then
         # tcc: memmove of an assignment, a conversion of its own library
-        nm -u model.o | awk '{ print $NF }' |
+        "$nm" -u model.o | awk '{ print $NF }' |
             grep -v -E '^(pl_[a-z_]*|mem(cpy|set|move)|__floatun[sd]i[sd]f|_GLOBAL_OFFSET_TABLE_)$' >>log
         ! grep -q '<math\.h>' model.c model.h && [ ! -s log ]
         status=$?
@@ -111,7 +111,7 @@ for name in gear1 gear2 gear3 bilinear stop two_masses quarter_car_bumps; do
     result $status "$name: calls nothing but the runtime"
 done
 gcc -std=c99 -O2 -ffreestanding -fno-builtin -I"$root/runtime" -c "$root/runtime/crossings.c" -o part.o >log 2>&1 &&
-    nm -u part.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset|_GLOBAL_OFFSET_TABLE_)$' >>log
+    "$nm" -u part.o | awk '{ print $NF }' | grep -v -E '^(pl_[a-z_]*|memcpy|memset|_GLOBAL_OFFSET_TABLE_)$' >>log
 [ ! -s log ]
 result $? "crossings.c: freestanding"
 

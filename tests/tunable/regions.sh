@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # regions.sh PLGEN SOURCE REAL FILE.cases: models with regions whose matrices tunable params change, each as it is
 # written (retuned), and without `tunable` at the values of its line `#there` (plain): regions.c drives both, every
-# fifth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`:
+# tenth compiled with sanitizers, with MERGE=1 or LONG=1 in the environment all. Lines `#bad NAME=VALUE ... STATUS`:
 # values that NAME_retune refuses; `#by NAME,...`: derivatives by these are compared, too.
 plgen=$(realpath "$1")
 source=$(realpath "$2")
@@ -19,7 +19,7 @@ while read -r name; do
 	name=${name}_$real
 	compile=$run_cc
 	turn=$((turn + 1))
-	! merging && [ $((turn % 5)) -ne 3 ] || compile=$sanitizing
+	! merging && [ $((turn % 10)) -ne 3 ] || compile=$sanitizing
 	chosen "$name" || continue
 	there=$(sed -n 's/^#there //p' "$spec")
 	defines=''

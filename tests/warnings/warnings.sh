@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# What plgen emits compiles without a warning, beside its header, as C99 and as C++17, by gcc, g++ and clang: of
-# ../same/runs.list the first model of each folder, and of each kind, which is a heading of the list, the first with
-# each option. With MERGE=1 all, each by one of these and clang++ by turns; with LONG=1 all by all, and with code by
+# What plgen emits compiles without a warning, beside its header, as C99 and as C++17, by gcc, g++, clang or
+# clang++ by turns: of ../same/runs.list the first model of each folder, and of each kind, which is a heading of the
+# list, the first with each option. With MERGE=1 all; with LONG=1 all by all, and with code by
 # gcc, whose optimiser warns too.
 #
 #     warnings.sh PLGEN SOURCE_ROOT
@@ -78,10 +78,10 @@ while read -r line; do
 		compiled one.c "$run"
 	fi
 done <chosen
-sed '$d' compilers >some
 for file in kind*.c; do
 	[ -e "$file" ] || continue
 	number=${file#kind}
+	by_turns compilers >some
 	title=$(sed -n "s/^# \([^:,]*\).*/\1/p" "$root/tests/same/runs.list" | sed 1d | sed -n "${number%.c}p")
 	compiled "$file" "$title: $(grep -c "^${number%.c}; " chosen) models with options"
 done
