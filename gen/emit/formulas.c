@@ -226,6 +226,6 @@ void emit_formulas(struct formulas *f, int indent)
 	formulas_finish(f);
 	struct tape_target to = { .real = "double", .number = number, .operand = operand, .size = "pl_magnitude",
 				  .accumulate = "pl_accumulate", .context = f, .indent = indent,
-				  .rows_alike = f->e->at != NULL };
+				  .rows_alike = f->e->at != NULL, .rolls = f->e->device ? 0 : LONG_RUN };
 	tape_print(f->tape, &to, f->e->to);
 }

@@ -340,6 +340,51 @@ static void tape_text_of_lanes(void **state)
 	(void)state;
 }
 
+/* Operands of a place: as they are read, by arrays */
+static const char *place_name(const void *context, const struct tape_node *n)
+{
+	(void)context;
+	return format("y[%d]", n->index);
+}
+
+#define LOOP(tables, turn) \
+	"    {\n" tables "        for (turn_by_0 = 0; turn_by_0 < 5; turn_by_0++) {\n            " turn "\n        }\n    }\n"
+
+/* What waits for nothing of one another and has one shape is a loop; numbers and places that differ are tables. */
+static void tape_text_of_loops(void **state)
+{
+	static const int weight[] = { 2, 3, 5, -7, 11 }, other[] = { 3, 1, 4, 6, 5 };
+	struct tape_target target = c_text;
+	target.operand = place_name;
+	target.rolls = 20;
+	struct tape *t = tape_new();
+	for (int i = 0; i < 5; i++) {
+		tape_ref sine = tape_call(t, FN_SIN, x(t, 2 * i)), turn = tape_binary(t, TAPE_MUL, sine, x(t, 7));
+		tape_ref product = tape_binary(t, TAPE_MUL, turn, tape_call(t, FN_COS, x(t, other[i])));
+		tape_set(t, format("m[%d][2]", i), tape_scaled(t, weight[i], product), 4, NULL);
+		tape_set(t, format("m[2][%d]", 10 + other[i]), tape_binary(t, TAPE_ADD, product, turn), 4, NULL);
+	}
+	tape_set(t, "last", tape_binary(t, TAPE_DIV, x(t, 1), tape_number(t, -3)), 4, NULL);
+	tape_statement(t, "again();");
+	tape_set(t, "m[0][0]", tape_call(t, FN_SIN, x(t, 0)), 4, NULL);
+	assert_text_of(&target, t, "    double values_by_0[15];\n"
+				   "    int turn_by_0;\n"
+				   LOOP("", "values_by_0[turn_by_0] = sin(y[2 * turn_by_0]);")
+				   LOOP("        static const short place_by_0[5] = {3, 1, 4, 6, 5};\n",
+					"values_by_0[5 + turn_by_0] = cos(y[place_by_0[turn_by_0]]);")
+				   LOOP("", "values_by_0[10 + turn_by_0] = values_by_0[turn_by_0] * y[7];")
+				   LOOP("        static const double number_by_0[5] = {2.0, 3.0, 5.0, -7.0, 11.0};\n",
+					"m[turn_by_0][2] = number_by_0[turn_by_0] * values_by_0[turn_by_0] * y[7] *\n"
+					"                values_by_0[5 + turn_by_0];")
+				   LOOP("        static const short place_by_0[5] = {13, 11, 14, 16, 15};\n",
+					"m[2][place_by_0[turn_by_0]] = values_by_0[10 + turn_by_0] * values_by_0[5 + turn_by_0] +\n"
+					"                values_by_0[10 + turn_by_0];")
+				   "    last = y[1] / (-3.0);\n"
+				   "    again();\n"
+				   "    m[0][0] = values_by_0[0];\n");
+	(void)state;
+}
+
 int main(int argc, char **argv)
 {
 	const struct CMUnitTest tests[] = {
@@ -349,7 +394,7 @@ int main(int argc, char **argv)
 		cmocka_unit_test(tape_makes_each_once),	    cmocka_unit_test(tape_check_notices),
 		cmocka_unit_test(tape_counts_what_lives),   cmocka_unit_test(tape_text_of_sums),
 		cmocka_unit_test(tape_text_of_locals),	    cmocka_unit_test(tape_text_of_choices),
-		cmocka_unit_test(tape_text_of_lanes),
+		cmocka_unit_test(tape_text_of_lanes),	    cmocka_unit_test(tape_text_of_loops),
 	};
 	choose_cases(argc, argv);
 	memory_open();

@@ -85,7 +85,8 @@ static void print_series(const struct emitter *e, const struct recurrences *r, b
 {
 	const struct tape *t = tape_of_recurrences(r);
 	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
-					.context = e, .indent = 4, .locals_first = locals_first };
+					.context = e, .indent = 4, .locals_first = locals_first,
+					.rolls = locals_first || e->device ? 0 : LONG_RUN };
 	tape_print(t, &to, e->to);
 }
 
