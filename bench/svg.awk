@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# awk [-v ids=n] -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel
+# awk -f svg.awk PICTURE.svg: gnuplot's SVG in a fifth of its bytes, to the eye the same. A tenth of a pixel
 # is the unit and points within two of a line that goes on are left out; what lines, marks, areas and texts have in
 # common is said once; marks that are not drawn are not defined, and a mark at many places is a marker of one path. Of
 # what lies between two curves areas come first, then lines and marks; texts come last of all; what is none of these
-# stays as it was, ten times as large. ids: what ids begin with, where another picture stands in the same page.
+# stays as it was, ten times as large.
 function attribute(name,    value) {
 	if (!match(tag, "[ \n\t]" name " *= *('[^']*'|\"[^\"]*\")")) return ""
 	value = substr(tag, RSTART, RLENGTH)
@@ -115,7 +115,7 @@ function all_texts(    i, key, text) {
 	}
 	return text
 }
-function short_id(text) { gsub(/gpPt/, ids "p", text); return text }
+function short_id(text) { gsub(/gpPt/, "p", text); return text }
 function mark(    where, at, size, key, n) {
 	where = attribute("transform")
 	size = where; sub(/.*scale\(/, "", size); sub(/\).*/, "", size)
@@ -130,7 +130,7 @@ function hold_marks(    m, i) {
 	for (m = 1; m <= markers; m++) {
 		if (!marks[m]) continue
 		for (i = 1; i <= marks[m]; i++) { X[i] = mark_x[m, i]; Y[i] = mark_y[m, i] }
-		polyline("mark" SUBSEP " style=\"marker:url(#" ids "m" m ")\"", marks[m], 0, 1)
+		polyline("mark" SUBSEP " style=\"marker:url(#m" m ")\"", marks[m], 0, 1)
 		marks[m] = 0
 	}
 }
@@ -306,7 +306,7 @@ END {
 		}
 		for (m = 1; m <= markers; m++) {
 			split(marker_key[m], part, SUBSEP)
-			print "<marker" said("id", ids "m" m) "><use" \
+			print "<marker" said("id", "m" m) "><use" \
 				said("href", "#" part[1]) said("transform", "scale(" part[2] ")") \
 				said("color", part[3]) "/></marker>"
 		}

@@ -72,8 +72,7 @@ sh $charts/picture.sh --list "$folder" | FOLDER=$folder WORK=$work xargs -P "${J
 
 # Text and axes turn light where the reader's style is dark; areas keep their colours
 for picture in "$work"/pictures/*.svg; do
-	case $picture in *_narrow.svg) ids=n ;; *) ids= ;; esac
-	awk -v ids=$ids -f bench/svg.awk "$picture" >"$work/small" &&
+	awk -f bench/svg.awk "$picture" >"$work/small" &&
 		awk -v css=$charts/style.css -f $charts/dark.awk "$work/small" >"$work/picture"
 	mv "$work/picture" "$folder/$(basename "$picture")"
 done

@@ -81,10 +81,10 @@ inline() {
 	fi
 }
 
-# picture_of MODEL: within its page
+# picture_of MODEL: within its page, for broad and narrow screens with one definition of their marks
 picture_of() {
 	inline "precision_$1.svg" broad "model_$1.html" >"$work/broad"
-	inline "precision_$1_narrow.svg" narrow "model_$1.html" >"$work/narrow"
+	inline "precision_$1_narrow.svg" narrow "model_$1.html" | sed '/^<defs>/,/^<\/defs>/d' >"$work/narrow"
 	[ -s "$work/broad" ] || return 0
 	heard "precision_$1"
 	printf '<figure id="precision_%s"><div class="figure fits" role="img" aria-label="%s">\n' "$1" "$found"
