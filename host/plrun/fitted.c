@@ -216,7 +216,7 @@ void fit_solve(struct estimate *e)
 struct found {
 	const struct unknown *unknown;
 	int unknowns, count, *which;            /* those that are not held */
-	double *length, *covariance;            /* of columns; unknowns x unknowns */
+	double *length, *covariance;            /* of columns; unknowns x unknowns, of residuals of variance 1 */
 	double freedom, variance, reach;        /* reach: of 95 %, in standard errors */
 };
 
@@ -285,8 +285,7 @@ static void take_covariance(struct found *s, const gsl_matrix *V, const gsl_vect
 			for (size_t k = 0; k < (size_t)s->count; k++)
 				sum += gsl_matrix_get(V, (size_t)i, k) * gsl_matrix_get(V, (size_t)j, k) /
 				       pow(gsl_vector_get(singular, k), 2);
-			s->covariance[s->which[i] * s->unknowns + s->which[j]] =
-				s->variance * sum / (s->length[i] * s->length[j]);
+			s->covariance[s->which[i] * s->unknowns + s->which[j]] = sum / (s->length[i] * s->length[j]);
 		}
 }
 
@@ -317,9 +316,14 @@ static struct found judge(const struct estimate *e)
 	return s;
 }
 
-static double error_of(const struct found *s, int i)
+static double root_of(const struct found *s, int i)
 {
 	return sqrt(s->covariance[i * s->unknowns + i]);
+}
+
+static double error_of(const struct found *s, int i)
+{
+	return sqrt(s->variance) * root_of(s, i);
 }
 
 /* ---- the table ---- */
@@ -342,7 +346,8 @@ static void print_table(const struct estimate *e, const struct found *s, FILE *t
 		print_number(to, !e->held[i], e->value[i] + s->reach * error);
 		for (int j = 0; j < s->unknowns; j++)
 			print_number(to, !e->held[i] && !e->held[j],
-				     i == j ? 1 : s->covariance[i * s->unknowns + j] / (error * error_of(s, j)));
+				     i == j ? 1 : s->covariance[i * s->unknowns + j] /
+						  (root_of(s, i) * root_of(s, j)));
 	}
 	putc('\n', to);
 }

@@ -122,6 +122,9 @@ tail -n +2 table | cut -d, -f 1,2 | paste -d, - wanted | awk -F, '{ off = $2 - $
 	END { exit bad || NR != 6 }' >>log
 result $? 'two records without noise: params, and initial values of each, within 1e-9'
 
+run ring.spec 0.5 >own.csv && run ring.spec --fit k,c,x own.csv >table && ! grep -i nan table >log
+result $? 'a record that the model itself has made: errors of 0, and correlations as of any other'
+
 # Through seven impacts, of which each moves with every param; and a model that is retuned
 cat >struck.spec <<'X'
 model struck
