@@ -51,6 +51,8 @@ class Model(Linear, Derivatives):
         text = isinstance(spec, str) and '\n' in spec
         self._spec: str = '-' if text else os.fspath(spec)
         self._text: str | None = str(spec) if text else None
+        if isinstance(options, str):
+            raise TypeError('options: a list of texts is expected, as ["--fast"]')
         self._options = list(options)
         for name, value in (('--real', real), ('--scheme', scheme)):
             if value is not None:

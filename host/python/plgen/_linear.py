@@ -191,6 +191,8 @@ class Derivatives:
     def _derive(self: Any, jac: Any) -> None:
         """From now on a model that has these; its state stays."""
         by = jac if isinstance(jac, str) else None if jac is True else ','.join(jac)
+        if by == '':
+            raise ValueError('jac: no name; True takes those of the statement `sensitivity`')
         if by == self._by and self._code.derivatives is not None:
             return
         before, fresh, new = self._by, self._fresh, self.time == 0 and self._is_at_start()
@@ -289,7 +291,12 @@ class Derivatives:
         c = self._code
         samples, n, rows, J = self._open_d(u, int(self._fresh))
         first, start = len(rows) - n, self._memory.copy()
-        w = np.array(w, dtype=self.dtype).reshape(len(rows), len(self.outputs))
+        w = np.array(w, dtype=self.dtype)
+        if w.shape != rows.shape and w.shape != self._narrow(rows).shape:
+            self._fresh = first > 0
+            raise ValueError('w: expected an array as the rows, of shape {}, found {}'.format(
+                self._narrow(rows).shape, w.shape))
+        w = w.reshape(rows.shape)
         lam = np.zeros(len(self.states)) if end is None else end
         lam = self._vector(lam, len(self.states), 'states').copy()
         pb, ub = np.zeros(len(c.columns), dtype=self.dtype), np.zeros((n + 1, len(self.inputs)), dtype=self.dtype)
