@@ -295,15 +295,13 @@ static void PL(retune_phases)(PL(coeffs) *c, const pl_two *value, real h)
         } else {
             c->phase_rate[i] = PL(nominal).phase_rate[i];
         }
+        const int tuned = PL(rate_entry)[i] >= 0;
 #else
         const pl_rate *const rate = &PL(phase_rate)[i];
+        const int tuned = 0;
 #endif
-#if !PL_ANY_STEP
-        if (PL(rate_entry)[i] < 0) {
-            continue;
-        }
-#endif
-        c->phase_step[i] = pl_phase_at(rate, h);
+        /* the spec's step is no number of the type, and what was made of it is more exact than by h */
+        c->phase_step[i] = tuned || h != PL(nominal).h ? pl_phase_at(rate, h) : PL(nominal).phase_step[i];
     }
     (void)value;
 }
@@ -325,7 +323,8 @@ static void PL(retune_others)(PL(coeffs) *c, const pl_two *value, const pl_two *
 #endif
 #if PL_ANY_STEP && PL_ENVELOPES > 0
     for (i = 0; i < PL_ENVELOPES; i++) {
-        c->envelope_step[i] = pl_envelope_at(&PL(envelope_rate)[i], PL(decays)[i], h);
+        c->envelope_step[i] = h != PL(nominal).h ? pl_envelope_at(&PL(envelope_rate)[i], PL(decays)[i], h)
+                                                 : PL(nominal).envelope_step[i];
     }
 #endif
 #if PL_PEAKS > 0
@@ -391,7 +390,7 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
     }
 #if PL_ANY_STEP
 #if PL_SEGMENTS > 1
-    to->h_low = 0;
+    to->h_low = h != PL(nominal).h ? 0 : PL(nominal).h_low;
 #endif
     to->h = h;
 #endif

@@ -100,6 +100,7 @@ tests/batch/forced.spec --anchors 1
 tests/peaks/tuned.spec
 tests/batch/free.spec
 tests/batch/loaded.spec --anchors 1
+tests/batch/phased.spec --real float
 tests/batch/record.spec
 tests/refresh/fast.spec --anchors 1
 models/gear1.spec
