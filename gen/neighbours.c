@@ -5,6 +5,7 @@
 #include "step/certify/certify.h"
 
 #include <math.h>
+#include <string.h>
 
 static const char *value_of_param(const struct symbol *s)
 {
@@ -62,24 +63,37 @@ static void try_near(struct measuring *m, struct alternative *a, struct ready *r
 	a->worst_name = what;
 }
 
+/* As initial values are, onto constraints; false: they are not met from there */
+static bool meet_constraints_from(struct measuring *m, const struct alternative *a, double *start)
+{
+	if (m->model->spec->count.multipliers == 0)
+		return true;
+	struct request as = request_of(m, a);
+	as.again.start = start;
+	const struct step *there = built(m, &as, NULL);
+	for (int i = 0; there && i < m->model->written->system.states; i++)
+		start[i] = mpq_get_d(there->model->written->initial[i]);
+	return there != NULL;
+}
+
 static void try_starts(struct measuring *m, struct alternative *a, struct ready *ready)
 {
 	const struct model *written = m->model->written;
 	const int states = written->system.states;
-	double *start = ARRAY(double, states);
+	double *as_written = ARRAY(double, states), *start = ARRAY(double, states);
 	running_start(m->solvers.r, 0, NULL);
-	running_state(m->solvers.r, start);
+	running_state(m->solvers.r, as_written);
 	for (int i = 0; i < states; i++) {
-		const double as_written = start[i];
-		if (as_written == 0)
+		if (as_written[i] == 0)
 			continue;
 		name_neighbour(a, written->names.state[i]);
 		for (int up = 0; up < 2; up++) {
-			start[i] = as_written * (up ? 1.1 : 0.9);
-			try_near(m, a, ready, start, format("%s = %.3g at the start", written->names.state[i],
-							    start[i]));
+			memcpy(start, as_written, (size_t)states * sizeof *start);
+			start[i] = as_written[i] * (up ? 1.1 : 0.9);
+			const char *what = format("%s = %.3g at the start", written->names.state[i], start[i]);
+			if (meet_constraints_from(m, a, start))
+				try_near(m, a, ready, start, what);
 		}
-		start[i] = as_written;
 	}
 }
 

@@ -183,6 +183,8 @@ static void evaluate_initials(struct building *b)
 		if (statement != failed && !statement_guard(evaluate_initial, &(struct initial_work){ b, i, known }))
 			failed = statement;
 	}
+	for (int i = 0; b->request->again.start && i < b->model->system.states; i++)
+		mpq_set_d(b->model->initial[i], b->request->again.start[i]);
 }
 
 /* ---- the whole ---- */

@@ -26,6 +26,7 @@ struct again {                      /* to build a model a second time, for build
 	/* this param has that value, to see how the equations follow it; NULL: none has */
 	const char *varied;
 	mpq_srcptr value;
+	const double *start;        /* from these states; NULL: from the initial values */
 	bool trial;                 /* its step and its outputs alone: no NAME_at, no blocks of rows */
 };
 #define EQUILIBRIA "all equilibria"

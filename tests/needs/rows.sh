@@ -31,4 +31,9 @@ printf 'model apart\ncoord x\nx%s + x = cos(t)\nneed x within 1e-40 until 50\n' 
 "$plgen" --solution 1 apart.spec >out 2>log
 [ $? -eq 1 ] && [ ! -s out ] && grep -q 'error: the needs choose no step: the need cannot be met' log
 result $? 'a need that cannot be met has no rows'
+
+printf '%s\n' 'model swings' 'coord x, z' 'init x = 0.3, z = -0.4' "energy T = (x'^2 + z'^2)/2, V = 9.81*z" \
+	'constraint rod: x^2 + z^2 = 0.25' 'need z within 1e-9 until 2' >swings.spec
+"$plgen" swings.spec 2>log | grep -q 'where x, z are each 10 % more or less'
+result $? "starts beside the spec's are on the constraint, as the spec's is"
 tap_end
