@@ -101,7 +101,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	if (b->factors)
 		say(e, "    double *factors;  /* [$N_BATCH_FACTORS][count]: coefficients of each instance, set by "
 		       "$n_batch_use; NULL: all have those of shared */\n");
-	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output| at ends of steps; "
+	say(e, "    double *peak;     /* [$N_OUTPUTS][count]: the largest |output|, start and ends of steps; "
 	       "NULL: not kept */\n"
 	       "    struct $n shared;       /* %s */\n"
 	       "} $n_instances;\n",
