@@ -103,9 +103,10 @@ picture() {
 		fits=' fits'
 		echo "${1}_narrow.svg" >>"$shown"
 	fi
-	printf '<figure id="%s"><div class="figure%s"><a href="%s.svg"><picture>' "$1" "$fits" "$1"
-	[ -z "$fits" ] || printf '<source media="(max-width: 640px)" srcset="%s_narrow.svg">' "$1"
-	printf '<img src="%s.svg" %s alt="%s" loading="lazy"></picture></a></div>\n' "$1" "$size" "${found:-$1}"
+	printf '<figure id="%s"><div class="figure%s"><a href="%s.svg">' "$1" "$fits" "$1"
+	[ -z "$fits" ] || printf '<picture><source media="(max-width: 640px)" srcset="%s_narrow.svg">' "$1"
+	printf '<img src="%s.svg" %s alt="%s" loading="lazy">%s</a></div>\n' "$1" "$size" "${found:-$1}" \
+		"${fits:+</picture>}"
 	printf '<figcaption>%s</figcaption></figure>\n' "${text:-$found}"
 }
 

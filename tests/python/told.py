@@ -512,8 +512,8 @@ ub = m.vjp(record, w, ['m', 'r'])[1]
 case('vjp: no number for samples of an input that is not named', np.isnan(ub[:, 0]).all() and not np.isnan(ub[:, 1]).any(),
      ub[:3])
 m.reset()
-refuses('weights of another shape than the rows', 'w: expected an array as the rows, of shape (101, 2), found (2, 101)',
-        lambda: m.vjp(record, w.T, by), ValueError)
+refuses('weights of another shape than the rows', 'w: expected an array as the rows, of shape {}, found {}'.format(
+        y.shape, y.T.shape), lambda: m.vjp(record, w.T, by), ValueError)
 case('vjp: after that as before', same(m.vjp(record, w, by, snapshots=5)[0], pb))
 refuses('jac without a name', 'jac: no name; True takes those of the statement `sensitivity`',
         lambda: m.run(record, jac=[]), ValueError)
