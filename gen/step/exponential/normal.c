@@ -27,18 +27,33 @@ static const char *name_of(const struct step *step)
 	return scheme_name(step->model->scheme);
 }
 
+/* Beside a derivative by what changes masses M is [M, 0; M_k, M]. */
+static void check_derivative(const struct step *step, int coord)
+{
+	const struct spec *spec = step->model->spec;
+	if (!spec->joined.columns || coord < spec->joined.own)
+		return;
+	const int column = (coord - spec->joined.own) / spec->joined.stride;
+	const struct sensitivity *by = &spec->sensitivity[step->model->request.again.derivatives_from + column];
+	error(by->at, "other schemes have one", "no derivative is by '%s' in scheme %s: it changes masses", by->name,
+	      name_of(step));
+}
+
 static void check_symmetry(const struct normal_work *w)
 {
 	const struct model *model = w->model;
 	int n = model->n;
 	for (int i = 0; i < n; i++)
-		for (int j = 0; j < i; j++)
-			if (!mpq_equal(w->M[i * n + j], w->M[j * n + i]))
-				error(scheme_place(w->step), "Lagrange's equations, one for each coordinate, have one",
-				      "scheme %s needs a symmetric mass matrix: %s'' has the factor %s in the equation "
-				      "of %s, %s'' has %s in that of %s", name_of(w->step), model->names.coord[j],
-				      readable_text(w->M[i * n + j]), model->names.coord[i], model->names.coord[i],
-				      readable_text(w->M[j * n + i]), model->names.coord[j]);
+		for (int j = 0; j < i; j++) {
+			if (mpq_equal(w->M[i * n + j], w->M[j * n + i]))
+				continue;
+			check_derivative(w->step, i);
+			error(scheme_place(w->step), "Lagrange's equations, one for each coordinate, have one",
+			      "scheme %s needs a symmetric mass matrix: %s'' has the factor %s in the equation "
+			      "of %s, %s'' has %s in that of %s", name_of(w->step), model->names.coord[j],
+			      readable_text(w->M[i * n + j]), model->names.coord[i], model->names.coord[i],
+			      readable_text(w->M[j * n + i]), model->names.coord[j]);
+		}
 }
 
 static void check_left(const struct step *step)
