@@ -108,7 +108,9 @@ static const char *renamed(const struct runtime *r, const struct piece *p)
 	}
 	fputs(done, to);
 	fclose(to);
-	return need_memory(text);
+	const char *kept = format("%s", (char *)need_memory(text));
+	free(text);
+	return kept;
 }
 
 static void rename_all(struct runtime *r)

@@ -3,6 +3,7 @@
 #include "command.h"
 
 #include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- words ---- */
@@ -300,7 +301,9 @@ static const char *full_text(const char *name)
 	FILE *to = need_memory(open_memstream(&full, &size));
 	print_included(to, runtime_text(name), "");
 	fclose(to);
-	return need_memory(full);
+	const char *kept = format("%s", (char *)need_memory(full));
+	free(full);
+	return kept;
 }
 
 static void read_lines(struct reader *f, const char *rest)
