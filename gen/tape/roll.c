@@ -130,7 +130,8 @@ struct roll *roll_new(struct printing *p)
 	if (!values)
 		return NULL;
 	find_depths(p);
-	fprintf(p->out, "%*s%s values_by_0[%d];\n%*sint turn_by_0;\n", p->indent, "", p->to->real, values, p->indent, "");
+	fprintf(p->out, "%*s%s values_by_0[%d];\n", p->indent, "", p->to->real, values);
+	fprintf(p->out, "%*sint turn_by_0;\n", p->indent, "");
 	return r;
 }
 
@@ -141,7 +142,8 @@ static struct leaf leaf_of(const char *text)
 	struct leaf leaf = { .pattern = "" };
 	int places = 0;
 	while (*text) {
-		const size_t bracket = strcspn(text, "["), digits = text[bracket] ? strspn(text + bracket + 1, "0123456789") : 0;
+		const size_t bracket = strcspn(text, "[");
+		const size_t digits = text[bracket] ? strspn(text + bracket + 1, "0123456789") : 0;
 		const bool number = digits > 0 && digits < 9 && text[bracket + 1 + digits] == ']' && places < PLACES;
 		const size_t length = text[bracket] ? bracket + 1 : bracket;
 		leaf.pattern = format("%s%.*s%s", leaf.pattern, (int)length, text, number ? "#" : "");
@@ -213,7 +215,8 @@ static const char *place_text(const struct printing *p, const struct loop *l, in
 	if (even && stride == 0)
 		return format("%d", first);
 	if (even && stride > 0)
-		return format("%s%sturn_by_0", first ? format("%d + ", first) : "", stride > 1 ? format("%d * ", stride) : "");
+		return format("%s%sturn_by_0", first ? format("%d + ", first) : "",
+			      stride > 1 ? format("%d * ", stride) : "");
 	const char *name = format("place_by_%d", (*tables)++);
 	print_table(p, l, format("%s %s", small ? "short" : "int", name), leaf, place);
 	return format("%s[turn_by_0]", name);
@@ -240,7 +243,8 @@ static const char *leaf_text(const struct printing *p, const struct loop *l, int
 	const char *text = "", *rest = f->pattern;
 	for (int k = 0; *rest; k++) {
 		const size_t length = strcspn(rest, "#");
-		text = format("%s%.*s%s", text, (int)length, rest, rest[length] ? place_text(p, l, leaf, k, tables) : "");
+		const char *place = rest[length] ? place_text(p, l, leaf, k, tables) : "";
+		text = format("%s%.*s%s", text, (int)length, rest, place);
 		rest += length + (rest[length] == '#');
 	}
 	return text;
@@ -383,7 +387,8 @@ static int print_depth(struct printing *p, int run, int depth)
 		deeper += r->depth[i] > depth;
 		if (r->depth[i] != depth)
 			continue;
-		struct statement *s = statement_of(p, (struct leaf){ .pattern = "values_by_0[#]", .place = { TAPE_NONE } }, i);
+		const struct leaf place = { .pattern = "values_by_0[#]", .place = { TAPE_NONE } };
+		struct statement *s = statement_of(p, place, i);
 		s->value = i;
 		sort_in(&made, s);
 	}

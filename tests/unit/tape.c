@@ -348,7 +348,8 @@ static const char *place_name(const void *context, const struct tape_node *n)
 }
 
 #define LOOP(tables, turn) \
-	"    {\n" tables "        for (turn_by_0 = 0; turn_by_0 < 5; turn_by_0++) {\n            " turn "\n        }\n    }\n"
+	"    {\n" tables "        for (turn_by_0 = 0; turn_by_0 < 5; turn_by_0++) {\n" \
+	"            " turn "\n        }\n    }\n"
 
 /* What waits for nothing of one another and has one shape is a loop; numbers and places that differ are tables. */
 static void tape_text_of_loops(void **state)
@@ -377,7 +378,8 @@ static void tape_text_of_loops(void **state)
 					"m[turn_by_0][2] = number_by_0[turn_by_0] * values_by_0[turn_by_0] * y[7] *\n"
 					"                values_by_0[5 + turn_by_0];")
 				   LOOP("        static const short place_by_0[5] = {13, 11, 14, 16, 15};\n",
-					"m[2][place_by_0[turn_by_0]] = values_by_0[10 + turn_by_0] * values_by_0[5 + turn_by_0] +\n"
+					"m[2][place_by_0[turn_by_0]] = values_by_0[10 + turn_by_0] * "
+					"values_by_0[5 + turn_by_0] +\n"
 					"                values_by_0[10 + turn_by_0];")
 				   "    last = y[1] / (-3.0);\n"
 				   "    again();\n"
