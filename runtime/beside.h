@@ -10,6 +10,7 @@
  *     PL_DECLARED                  1: outputs are declared; else they are the states
  *     PL_ENDED(b)                whether b has no more of a series in hand, so that its states may be written
  *     PL_PAST_SAMPLES            of an input before the last
+ *     PL_SEGMENTS, PL_PLACES     spans of time in which loads have a formula each; 1: PL(place) follows a state
  *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
  *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
@@ -114,6 +115,16 @@ static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
     PL(take_samples)(b, s, ds);
     if (!PL(is_left)(b, s, ds, z)) {
         PL(set)(b, PL_OF(time)(s), z);
+#if PL_SEGMENTS > 1
+        /* its time is counted in steps, not rounded: what changes now has changed */
+        b->t0 = s->t0;
+        b->k = s->k;
+        b->segment = 0;
+        PL(pass_segments)(b);
+#if PL_PLACES
+        PL(place)(b);
+#endif
+#endif
         return;
     }
     for (i = 0; i < PL_STATES && PL_ENDED(b); i++) {

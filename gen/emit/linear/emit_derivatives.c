@@ -333,7 +333,7 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "OWN_STATES", e->system->states }, { "OWN_INPUTS", given_inputs(e) },
 		   { "OWN_OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
-		   { "TUNED", b->step->is.tuned },
+		   { "TUNED", b->step->is.tuned }, { "SEGMENTS", b->system->segments }, { "PLACES", has_place(b) },
 		   { "FROM", block->first }, { "WIDE", block->columns }, { "DECLARED", e->model->declared_outputs });
 	emit_moved_columns(b);
 	say(e, "#define PL_OF(name) %s_##name\n"
