@@ -527,7 +527,6 @@ static void PL(many_hold)(void *b, const real *u)
 }
 #endif
 
-/* What all share is as an instance alone has it: a step of so many seconds as h says, where the spec's is exact. */
 static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
 {
     PL_INSTANCES *const b = (PL_INSTANCES *)to;
@@ -546,7 +545,6 @@ static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
         PL(batch_take)(b, j, &one);
         PL(use)(&one, &c);
         PL(out)(&one, out);
-        PL(use)(&b->shared, &c);
     }
     for (i = 0; i < PL_OUTPUTS && status == 0 && b->peak; i++) {
         b->peak[i * b->count + j] = pl_magnitude(out[i]);

@@ -403,7 +403,7 @@ static void check_page(const struct options *o)
 {
 	const char *surplus = o->input ? "--input" : o->sweep ? "--sweep" : o->plot ? "--plot" : o->stats ? "--stats"
 			    : o->window ? "--psd" : o->show ? "--show" : o->output ? "-o" : o->chart ? "--chart"
-			    : o->fit ? "--fit" : NULL;
+			    : o->fit ? "--fit" : o->until >= 0 ? "a time" : NULL;
 	if (o->page && surplus)
 		wrong_usage(format("%s does not go with --page: a page has its controls", surplus));
 }

@@ -142,6 +142,8 @@ refuses 'densities of rows that are apart' 2 "plrun: error: --psd takes every st
 fold high frequencies onto low ones
 $usage" swing.spec 1 --psd --every 0.2
 refuses 'densities of a run that ends early' 1 "$(run hard.spec 10 2>&1 >out; cat said)" hard.spec 10 --psd hann:64
+refuses 'a page with a time' 2 "plrun: error: a time does not go with --page: a page has its controls
+$usage" swing.spec 1 --page a.html
 refuses 'densities of a sweep' 2 "plrun: error: --psd and --sweep: one at a time
 $usage" swing.spec 1 --psd --sweep k=1:2:3
 refuses 'a chart with a param' 2 "plrun: error: --chart takes the spec, T, --every and -o FOLDER alone, found -D

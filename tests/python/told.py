@@ -210,6 +210,8 @@ refuses('a number of steps beside inputs', 'the model has inputs, run() takes th
         lambda: Model('held.spec').run(5), ValueError)
 refuses('a record too narrow', 'expected rows of 2 numbers, the inputs, found an array of shape (5, 3)',
         lambda: Model('held.spec').run(np.zeros((5, 3))), ValueError)
+refuses('states that are not finite', 'states and time are not all finite',
+        lambda: model('sdcsf').set([np.nan] * 4), ValueError)
 refuses('samples that are not finite', 'the samples are not all finite',
         lambda: Model('held.spec').run(np.full((5, 2), np.inf)), ValueError)
 refuses('an array of another type', 'out: expected a contiguous array of float64 of shape (6, 4)',

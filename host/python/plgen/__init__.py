@@ -223,7 +223,10 @@ class Model(Linear, Derivatives):
     def set(self, y: Any, t: float | None = None) -> None:
         """The states y at the time t [s], now unless it is given."""
         y = self._vector(y, len(self.states), 'states')
-        self._code.model.set(self._state, self.time if t is None else t, y.ctypes.data)
+        t = self.time if t is None else t
+        if not (np.isfinite(y).all() and np.isfinite(t)):
+            raise ValueError('states and time are not all finite')
+        self._code.model.set(self._state, t, y.ctypes.data)
         self._begin()
 
     def reset(self) -> None:
