@@ -22,7 +22,7 @@ struct statement {
 };
 
 struct roll {
-	int *run, *depth;       /* per node: the run that makes it; how many values wait for one another in it */
+	int *run, *depth;           /* per node: the run that makes it; how many values wait for one another in it */
 	bool *value;                /* per node: it has a place of its own */
 	bool *inner;                /* per node: the first terms of a longer sum */
 	int *rolls;                 /* per out: the number of the long run that it begins; 0: none */
@@ -32,12 +32,12 @@ struct roll {
 
 /* ---- which nodes are values ---- */
 
-/* Is it read by the local of its reader, not by a place in an array? */
-static bool is_plain(struct printing *p, tape_ref ref)
+/* An operand that is read again, maybe behind a line that makes it another: one that has a name, or is no place */
+static bool is_kept_operand(struct printing *p, tape_ref ref)
 {
 	const struct tape_node *n = tape_node(p->t, ref);
-	const bool named = !n->choice && n->op != TAPE_CONSTANT && tape_is_operand(p->t, ref) && !p->local[ref];
-	return named && !strchr(tape_bare_text(p, ref, 0), '[');
+	const bool kept = !n->choice && n->op != TAPE_CONSTANT && p->uses[ref] > 1 && !p->local[ref];
+	return kept && (n->name || !strchr(tape_bare_text(p, ref, 0), '['));
 }
 
 /* A long sum goes on from a value each two terms: then its length is no part of its shape. */
@@ -45,7 +45,7 @@ static bool is_value(struct printing *p, tape_ref ref)
 {
 	const struct tape_node *n = tape_node(p->t, ref);
 	if (tape_is_operand(p->t, ref))
-		return p->uses[ref] > 1 && is_plain(p, ref);
+		return is_kept_operand(p, ref);
 	return !n->choice && (p->roll->inner[ref] || (p->uses[ref] > 1 && (!tape_is_cheap(p->t, ref) || n->name)));
 }
 
