@@ -552,12 +552,10 @@ struct sweep {
 	const char *host_why;
 };
 
-const char *sweep_value(const struct sweep *s, size_t row, size_t param);       /* as it is printed */
 int sweep_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
 	      FILE *to, struct workers w);              /* exit status */
-/* Computed, by any thread; each ends with a newline */
-void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line);
 
+const char *sweep_value(const struct sweep *s, size_t row, size_t param);       /* as it is printed */
 void find_variants(struct sweep *s);
 bool is_name_of(const struct machine *m, const char *name);     /* of a tunable param */
 void build_variant(const struct sweep *s, struct variant *v);
@@ -572,9 +570,17 @@ void journal_end(struct journal *j);                    /* all is done: nothing 
 
 struct workers workers_begin(int *argc, char ***argv);
 void workers_end(void);
-/* Lines 0 .. rows - 1 that are NULL, by `jobs` threads (0: as many as there are cores) of each process: deliver() is
- * called in the first process, for one line at a time */
-void workers_share(struct workers w, int jobs, struct sweep *s, size_t rows, char **line,
-		   void (*deliver)(void *who, size_t row, char *line), void *who);
+struct lines_wanted {                   /* lines 0 .. rows - 1 that are NULL */
+	size_t rows;
+	char **line;
+	int jobs;                               /* threads of each process; 0: as many as there are cores */
+	bool device;                            /* many lines at a time */
+	/* These lines, by any thread; each ends with a newline */
+	void (*compute)(void *who, const size_t *row, size_t count, char **line);
+	/* In the first process, one at a time */
+	void (*deliver)(void *who, size_t row, char *line);
+	void *who;
+};
+void workers_share(struct workers w, const struct lines_wanted *of);
 
 #endif

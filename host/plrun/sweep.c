@@ -12,11 +12,6 @@
 
 /* ---- the table ---- */
 
-const char *sweep_value(const struct sweep *s, size_t row, size_t param)
-{
-	return s->text[row * s->params + param];
-}
-
 static struct code *generate_with(const struct sweep *s, const char *definition, char **error)
 {
 	int status;
@@ -284,8 +279,9 @@ static void make_lines(struct sweep *s, const size_t *row, size_t count, char **
 }
 
 /* line: NULL, each; rows of one variant go together, wherever they stand */
-void sweep_lines(struct sweep *s, const size_t *row, size_t count, char **line)
+static void compute_lines(void *who, const size_t *row, size_t count, char **line)
 {
+	struct sweep *s = who;
 	size_t *some = need(calloc(2 * count, sizeof *some)), *place = some + count;
 	char **made = need(calloc(count, sizeof *made));
 	for (size_t i = 0, n = 0; i < count; i++, n = 0) {
@@ -491,7 +487,7 @@ int sweep_run(const struct toolchain *t, const struct options *o, const struct c
 	m = s.machine;
 	o = s.options;
 	begin_output(&s, c, w);
-	workers_share(w, o->jobs, &s, s.rows, s.line, deliver, &s);
+	workers_share(w, &(struct lines_wanted){ s.rows, s.line, o->jobs, o->device, compute_lines, deliver, &s });
 	if (w.rank != 0)
 		return 0;
 	progress_end();

@@ -8,6 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+const char *sweep_value(const struct sweep *s, size_t row, size_t param)
+{
+	return s->text[row * s->params + param];
+}
+
 static bool same_variant(const struct sweep *s, size_t a, size_t b)
 {
 	for (size_t i = 0; i < s->params; i++)

@@ -17,11 +17,8 @@ enum { LINES_AT_ONCE = 64, LINES_ON_DEVICE = 1 << 14 };
 
 struct share {
 	struct workers workers;
-	struct sweep *sweep;
-	size_t rows, awaited;                   /* awaited: lines that other processes owe the first */
-	char **line;
-	void (*deliver)(void *who, size_t row, char *line);
-	void *who;
+	const struct lines_wanted *of;
+	size_t awaited;                         /* lines that other processes owe the first */
 };
 
 #ifdef HAVE_MPI
@@ -42,7 +39,7 @@ static bool receive(struct share *s, bool wait)
 	uint64_t row;
 	MPI_Recv(message, length, MPI_BYTE, status.MPI_SOURCE, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
 	memcpy(&row, message, sizeof row);
-	s->deliver(s->who, (size_t)row, format("%s", message + sizeof row));
+	s->of->deliver(s->of->who, (size_t)row, format("%s", message + sizeof row));
 	s->awaited--;
 	free(message);
 	return true;
@@ -64,8 +61,9 @@ static void send(size_t row, char *line)
 /* Which rows are done is known to the first, which has the journal. */
 static void agree_on_done(const struct share *s, char *done)
 {
-	for (size_t i = 0; i < s->rows; i += 1 << 30) {
-		size_t part = s->rows - i < 1 << 30 ? s->rows - i : 1 << 30;
+	const size_t rows = s->of->rows;
+	for (size_t i = 0; i < rows; i += 1 << 30) {
+		size_t part = rows - i < 1 << 30 ? rows - i : 1 << 30;
 		MPI_Bcast(done + i, (int)part, MPI_BYTE, 0, MPI_COMM_WORLD);
 	}
 }
@@ -120,22 +118,22 @@ static void hand_over(struct share *s, size_t row, char *line)
 		send(row, line);
 		return;
 	}
-	s->deliver(s->who, row, line);
+	s->of->deliver(s->of->who, row, line);
 	while (s->awaited && receive(s, false))
 		;
 }
 
 /* As many lines at a time as go side by side, and few enough that all threads have some to the end */
-static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
+static void run_own(struct share *s, const size_t *own, size_t count)
 {
 #ifdef _OPENMP
-	int threads = jobs ? jobs : omp_get_max_threads();
+	const int threads = s->of->jobs ? s->of->jobs : omp_get_max_threads();
 #else
 	const int threads = 1;
-	if (jobs > 1)
+	if (s->of->jobs > 1)
 		wrong_usage("this plrun was built without OpenMP: one job at a time");
 #endif
-	const bool device = s->sweep->options->device;
+	const bool device = s->of->device;
 	const size_t each = device ? count / (size_t)threads + 1 : count / (size_t)threads / 4 + 1;
 	const size_t most = device ? LINES_ON_DEVICE : LINES_AT_ONCE, some = each < most ? each : most;
 #ifdef _OPENMP
@@ -144,7 +142,7 @@ static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
 	for (size_t i = 0; i < count; i += some) {
 		const size_t n = count - i < some ? count - i : some;
 		char **line = need(calloc(n, sizeof *line));
-		sweep_lines(s->sweep, own + i, n, line);
+		s->of->compute(s->of->who, own + i, n, line);
 		for (size_t k = 0; k < n; k++)
 #ifdef _OPENMP
 #pragma omp critical(hand_over)
@@ -154,17 +152,16 @@ static void run_own(struct share *s, const size_t *own, size_t count, int jobs)
 	}
 }
 
-void workers_share(struct workers w, int jobs, struct sweep *sweep, size_t rows, char **line,
-		   void (*deliver)(void *who, size_t row, char *line), void *who)
+void workers_share(struct workers w, const struct lines_wanted *of)
 {
-	struct share s = { w, sweep, rows, 0, line, deliver, who };
-	char *done = need(calloc(rows + 1, 1));
-	size_t *own = need(calloc(rows + 1, sizeof *own)), count = 0;
-	for (size_t i = 0; i < rows; i++)
-		done[i] = line[i] != NULL;
+	struct share s = { w, of, 0 };
+	char *done = need(calloc(of->rows + 1, 1));
+	size_t *own = need(calloc(of->rows + 1, sizeof *own)), count = 0;
+	for (size_t i = 0; i < of->rows; i++)
+		done[i] = of->line[i] != NULL;
 	if (w.size > 1)
 		agree_on_done(&s, done);
-	for (size_t i = 0; i < rows; i++) {
+	for (size_t i = 0; i < of->rows; i++) {
 		if (done[i])
 			continue;
 		if ((int)(i % (size_t)w.size) == w.rank)
@@ -172,7 +169,7 @@ void workers_share(struct workers w, int jobs, struct sweep *sweep, size_t rows,
 		else
 			s.awaited++;
 	}
-	run_own(&s, own, count, jobs);
+	run_own(&s, own, count);
 	while (w.rank == 0 && s.awaited && receive(&s, true))
 		;
 	free(done);
