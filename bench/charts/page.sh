@@ -185,7 +185,7 @@ page() {
 	EOT
 	[ "$1" = index ] || echo '<a href="index.html">All models</a>'
 	for other in $names; do
-		[ "$other" = "$1" ] || [ ! -f "$folder/$other.html" ] ||
+		[ "$other" = "$1" ] || [ "${1#model_}" != "$1" ] || [ ! -f "$folder/$other.html" ] ||
 			printf '<a href="%s.html">%s</a>\n' "$other" "$(topic "$other" 2)"
 	done
 	echo '</nav>'
