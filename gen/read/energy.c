@@ -186,13 +186,38 @@ static bool is_zero_number(const struct node *node)
 	return node->kind == NODE_NUMBER && mpq_sgn(node->number) == 0;
 }
 
-/* Its force does -NAME dg/dq q' = NAME dg/dt, that of velocities -NAME dg/dq' q' */
+/* In each term of it, of velocities; MIXED: not the same in all */
+enum { MIXED = -1 };
+static int degree_in_velocities(const struct node *node)
+{
+	const bool name = node->kind == NODE_NAME, product = node->kind == NODE_PRODUCT, sum = node->kind == NODE_SUM;
+	int degree = 0, terms = 0;
+	if (name && node->symbol->kind == SYMBOL_LET && node->symbol->value)
+		return degree_in_velocities(node->symbol->value);
+	if (name)
+		return node->symbol->kind == SYMBOL_COORD ? node->primes : 0;
+	for (int i = 0; i < node->children && degree != MIXED; i++) {
+		if (sum && is_zero_number(node->child[i]))
+			continue;
+		const int own = degree_in_velocities(node->child[i]);
+		const bool fits = product ? own != MIXED && (own == 0 || !node->inverse[i])
+				  : sum   ? terms++ == 0 || own == degree
+					  : own == 0;
+		degree = !fits ? MIXED : product ? degree + own : own;
+	}
+	return degree;
+}
+
+/* Its force does -NAME dg/dq q' = NAME dg/dt, that of velocities -NAME dg/dq' q', which is -NAME g = 0 where no term
+ * of g is without them */
 static void add_power_of_constraint(struct node *sum, const struct energy *energy, struct place at)
 {
 	const struct slope by_velocities = { .at = at, .kind = SLOPE_VELOCITIES };
 	const struct slope by_time = { .at = at, .kind = SLOPE_LOADS };
 	struct node *moved = slope_by(energy->value, by_velocities), *name = node_new(NODE_NAME, at);
 	const bool velocities = !is_zero_number(moved);
+	if (velocities && degree_in_velocities(energy->value) == 1)
+		return;
 	name->symbol = energy->multiplier;
 	moved = velocities ? moved : slope_by(energy->value, by_time);
 	if (!is_zero_number(moved))
