@@ -8,7 +8,7 @@
 set -e
 build=$1
 shift
-[ $# -gt 0 ] || set -- cart_pole 1 2 3 5 10 slider_crank andrews
+[ $# -gt 0 ] || set -- cart_pole 2 3 5 10 four_bar slider_crank andrews
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 units=10

@@ -96,39 +96,83 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
  * those of U are the same.  A symmetric matrix is read below its diagonal. */
 static void PL(factor_by_lists)(int n, int symmetric, const short *first, const short *before, real *m)
 {
-    int i, p, q;
+    int i, k, p, q;
     for (i = 0; i < n; i++) {
         real *const row = m + i * n;
+        const int end = first[i + 1], whole = end > first[i] && before[first[i]] == i - (end - first[i]);
         real pivot = row[i];
-        for (p = first[i]; p < first[i + 1]; p++) {
+        for (p = first[i]; p < end; p++) {
             const int j = before[p];
-            real left = row[j], right = symmetric ? 0 : m[j * n + i];
-            for (q = first[j]; q < first[j + 1]; q++) {
-                left -= row[before[q]] * m[before[q] * n + j];
-                right -= symmetric ? 0 : m[j * n + before[q]] * m[before[q] * n + i];
+            const real left = row[j];
+            real right = symmetric ? left : m[j * n + i];
+            for (q = first[j]; q < first[j + 1] && !symmetric; q++) {
+                right -= m[j * n + before[q]] * m[before[q] * n + i];
             }
-            row[j] = left;
-            m[j * n + i] = (symmetric ? left : right) * m[j * n + j];
+            m[j * n + i] = right * m[j * n + j];
             pivot -= left * m[j * n + i];
+            if (whole) { /* all between the first and the diagonal */
+                PL_UNROLL
+                for (k = j + 1; k < i; k++) {
+                    row[k] -= left * m[j * n + k];
+                }
+                continue;
+            }
+            for (q = p + 1; q < end; q++) {
+                row[before[q]] -= left * m[j * n + before[q]];
+            }
         }
         row[i] = 1 / pivot;
     }
 }
 
-/* x, the right side, becomes the solution */
-static void PL(solve_by_lists)(int n, const short *first, const short *before, const real *m, real *x)
+/* Columns of x[n][count], `width` of them from x on, right sides, become the solutions. */
+static inline void PL(solve_columns)(int n, int count, int width, const short *first, const short *before,
+                                     const real *m, real *x)
 {
-    int i, p;
+    real sum[4];
+    int i, p, c;
     for (i = 0; i < n; i++) {
-        for (p = first[i]; p < first[i + 1]; p++) {
-            x[i] -= m[i * n + before[p]] * x[before[p]];
+        PL_UNROLL
+        for (c = 0; c < width; c++) {
+            sum[c] = x[i * count + c];
         }
-        x[i] *= m[i * n + i];
+        for (p = first[i]; p < first[i + 1]; p++) {
+            const real factor = m[i * n + before[p]], *const other = x + before[p] * count;
+            PL_UNROLL
+            for (c = 0; c < width; c++) {
+                sum[c] -= factor * other[c];
+            }
+        }
+        PL_UNROLL
+        for (c = 0; c < width; c++) {
+            x[i * count + c] = sum[c] * m[i * n + i];
+        }
     }
     for (i = n - 1; i > 0; i--) {
-        for (p = first[i]; p < first[i + 1]; p++) {
-            x[before[p]] -= m[before[p] * n + i] * x[i];
+        PL_UNROLL
+        for (c = 0; c < width; c++) {
+            sum[c] = x[i * count + c];
         }
+        for (p = first[i]; p < first[i + 1]; p++) {
+            const real factor = m[before[p] * n + i];
+            real *const other = x + before[p] * count;
+            PL_UNROLL
+            for (c = 0; c < width; c++) {
+                other[c] -= factor * sum[c];
+            }
+        }
+    }
+}
+
+/* Four at a time, as many as registers hold */
+static void PL(solve_by_lists)(int n, int count, const short *first, const short *before, const real *m, real *x)
+{
+    int c = 0;
+    for (; c + 4 <= count; c += 4) {
+        PL(solve_columns)(n, count, 4, first, before, m, x + c);
+    }
+    for (; c < count; c++) {
+        PL(solve_columns)(n, count, 1, first, before, m, x + c);
     }
 }
 #endif

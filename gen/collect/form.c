@@ -17,16 +17,19 @@ int basis_order(const struct basis *a, const struct basis *b)
 	return a->power != b->power ? a->power - b->power : (int)a->sine - (int)b->sine;
 }
 
-static void list_terms(const struct form *form, bool *seen, int *count, const struct form_term ***list)
+/* Inside of an atom once: solutions of many equations have their n^2 factors in common. */
+static void list_terms(const struct form *form, bool inside, bool *seen, int *count, const struct form_term ***list)
 {
 	for (int i = 0; form && i < form->terms; i++) {
 		const struct atom *atom = form->term[i].basis.atom;
-		*MORE(*list, *count) = &form->term[i];
-		if (!atom || seen[atom->index])
+		const bool known = atom && seen[atom->index];
+		if (!known || !inside)
+			*MORE(*list, *count) = &form->term[i];
+		if (!atom || known)
 			continue;
 		seen[atom->index] = true;
 		for (int k = 0; k < atom->operands; k++)
-			list_terms(atom->operand[k], seen, count, list);
+			list_terms(atom->operand[k], true, seen, count, list);
 	}
 }
 
@@ -34,7 +37,7 @@ const struct form_term **terms_within(const struct form *form, bool *seen)
 {
 	const struct form_term **list = NULL;
 	int count = 0;
-	list_terms(form, seen, &count, &list);
+	list_terms(form, false, seen, &count, &list);
 	*MORE(list, count) = NULL;
 	return list;
 }

@@ -14,6 +14,8 @@ struct formulas {
 	struct tape_forms *forms;
 	bool written;               /* over y[], u[] and t, as NAME_rhs has them */
 	const char *when;           /* C: the time at which conditions on time alone hold as they do; NULL: t */
+	int systems;
+	struct tape_system *system; /* that are solved by lists */
 };
 
 /* ---- what a basis is called ---- */
@@ -126,7 +128,8 @@ static const char *operand(const void *context, const struct tape_node *n)
 	}
 	if (n->part < LINEAR_TABLES)
 		return linear_entry(e, n);
-	return format("%s[%d]", n->part == TABLE_NODE ? "node" : "excess", n->index);
+	return n->part >= TABLE_SOLVED ? format("solved_by_%d[%d]", n->part - TABLE_SOLVED, n->index)
+				       : format("%s[%d]", n->part == TABLE_NODE ? "node" : "excess", n->index);
 }
 
 static const char *number(const void *context, mpq_srcptr value)
@@ -170,6 +173,55 @@ struct tape *formulas_tape(const struct formulas *f)
 tape_ref formula(struct formulas *f, const struct form *form)
 {
 	return tape_form(f->forms, form);
+}
+
+/* ---- equations that are solved by lists ---- */
+
+static const char *solve_lists(const void *context, const struct tape_system *s)
+{
+	struct formulas *f = *(struct formulas *const *)context;
+	const struct emitter *e = f->e;
+	*MORE(f->system, f->systems) = *s;
+	const char *factor = spell(e, "$n_factor_by_lists(%d, %d, $n_first_by_%d, $n_before_by_%d, matrix_by_%d); ",
+				   s->n, s->symmetric, s->matrix, s->matrix, s->matrix);
+	return spell(e, "%s$n_solve_by_lists(%d, %d, $n_first_by_%d, $n_before_by_%d, matrix_by_%d, solved_by_%d);",
+		     s->factored ? "" : factor, s->n, s->rights, s->matrix, s->matrix, s->matrix, s->number);
+}
+
+void solve_formulas_by_lists(struct formulas *f, int count, const struct form *const *form)
+{
+	tape_solve_by_lists(f->forms, count, form, &(struct tape_solver){ solve_lists, &f, TABLE_SOLVED });
+}
+
+void emit_solved_locals(const struct formulas *f)
+{
+	for (int i = 0; i < f->systems; i++) {
+		const struct tape_system *s = &f->system[i];
+		if (!s->factored)
+			say(f->e, "    double matrix_by_%d[%d] = {0.0};\n", s->matrix, s->n * s->n);
+		say(f->e, "    double solved_by_%d[%d] = {0.0};\n", s->number, s->n * s->rights);
+	}
+}
+
+static void emit_factor_columns(const struct emitter *e, const struct tape_system *s)
+{
+	const int n = s->n;
+	int *first = ARRAY(int, n + 1);
+	bool *filled = ARRAY(bool, n * n);
+	for (int i = 0; i < n * n; i++)
+		filled[i] = s->M[i]->terms || s->M[i % n * n + i / n]->terms;
+	const int *before = factor_columns(n, filled, first);
+	say(e, "\n/* Factors of M, of %d equations: where the columns of each row begin that are not 0, and these "
+	       "columns */\n", n);
+	emit_integers(e, "short", format("first_by_%d", s->matrix), n + 1, first);
+	emit_integers(e, "short", format("before_by_%d", s->matrix), first[n] ? first[n] : 1, before);
+}
+
+void emit_solved_tables(const struct formulas *f)
+{
+	for (int i = 0; i < f->systems; i++)
+		if (!f->system[i].factored)
+			emit_factor_columns(f->e, &f->system[i]);
 }
 
 tape_ref formula_sizes(struct formulas *f, const struct form *form)

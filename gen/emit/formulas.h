@@ -10,7 +10,8 @@
 /* ---- formulas.c: forms with atoms as C, by a tape ---- */
 
 struct formulas;
-enum formula_table { TABLE_NODE = LINEAR_TABLES, TABLE_EXCESS };  /* of TAPE_TABLE too: node[], excess[] */
+/* of TAPE_TABLE too: node[], excess[]; from the last on what was solved */
+enum formula_table { TABLE_NODE = LINEAR_TABLES, TABLE_EXCESS, TABLE_SOLVED };
 /* How forms are read: over y[], u[] and t as the equations are written, else by the locals of the step; what the state
  * chooses as interval[] says, the intervals of the step's expressions, else as the state is; conditions on time alone
  * as at the time that the C `when` is, NULL: at t */
@@ -21,6 +22,10 @@ struct formulas *formulas_new(const struct emitter *e, struct reading how, int c
 struct tape *formulas_tape(const struct formulas *f);             /* to set targets in */
 tape_ref formula(struct formulas *f, const struct form *form);
 tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum of the sizes of its terms */
+/* Many equations in these by functions of lines.h, before any is set: what is declared before its C, and the tables */
+void solve_formulas_by_lists(struct formulas *f, int count, const struct form *const *form);
+void emit_solved_locals(const struct formulas *f);
+void emit_solved_tables(const struct formulas *f);
 void formulas_finish(struct formulas *f);                         /* once all is set */
 struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
 void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */

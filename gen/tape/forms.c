@@ -273,6 +273,13 @@ static tape_ref entry_ref(struct tape_forms *f, const struct form *form)
 	return form->terms ? tape_form(f, form) : TAPE_NONE;
 }
 
+static void add_solution(struct tape_forms *f, const struct atom *a, tape_ref *x)
+{
+	ENLARGE(f->solution, (size_t)f->solutions + 1);
+	f->solution[f->solutions].atom = a;
+	f->solution[f->solutions++].x = x;
+}
+
 static tape_ref solution_ref(struct tape_forms *f, const struct atom *a)
 {
 	const struct linear_system e = system_of(a, a->operand);
@@ -288,9 +295,7 @@ static tape_ref solution_ref(struct tape_forms *f, const struct atom *a)
 			right[i] = entry_ref(f, e.f[i]);
 		tape_solve(tape_factors_new(f->tape, e.n, M), right, x);
 		known = f->solutions;           /* operands may have been solutions themselves */
-		ENLARGE(f->solution, (size_t)known + 1);
-		f->solution[known].atom = a;
-		f->solution[f->solutions++].x = x;
+		add_solution(f, a, x);
 	}
 	tape_ref x = f->solution[known].x[a->component];
 	return x == TAPE_NONE ? tape_number(f->tape, 0) : x;
@@ -324,6 +329,151 @@ static tape_ref atom_ref(struct tape_forms *f, const struct atom *a)
 	if (f->made[a->index] == TAPE_NONE)
 		f->made[a->index] = new_atom_ref(f, a);
 	return f->made[a->index];
+}
+
+/* ---- solutions by lists ---- */
+
+struct listed { const struct atom *atom; int matrix, level, right; }; /* one system */
+struct listing {
+	struct tape_forms *f;
+	const struct tape_solver *solver;
+	int *level;                 /* per atom: systems that wait for one another in it, and 1; 0: not known yet */
+	int count, matrices, systems;
+	struct listed *listed;
+};
+
+static bool same_matrix(const struct atom *a, const struct atom *b)
+{
+	const struct linear_system e = system_of(a, a->operand), other = system_of(b, b->operand);
+	bool same = e.n == other.n;
+	for (int i = 0; same && i < e.n * e.n; i++)
+		same = e.M[i] == other.M[i] || same_form(e.M[i], other.M[i]);
+	return same;
+}
+
+static void list_system(struct listing *l, const struct atom *a, int level)
+{
+	int matrix = l->matrices;
+	for (int i = 0; i < l->count; i++) {
+		if (same_solution(l->listed[i].atom, a))
+			return;
+		if (matrix == l->matrices && same_matrix(l->listed[i].atom, a))
+			matrix = l->listed[i].matrix;
+	}
+	l->matrices += matrix == l->matrices;
+	*MORE(l->listed, l->count) = (struct listed){ a, matrix, level, 0 };
+}
+
+static int level_of_form(struct listing *l, const struct form *form);
+
+static int level_of_atom(struct listing *l, const struct atom *a)
+{
+	int level = 1;
+	if (l->level[a->index])
+		return l->level[a->index];
+	for (int k = 0; k < a->operands; k++) {
+		const int inner = level_of_form(l, a->operand[k]);
+		level = inner > level ? inner : level;
+	}
+	const bool listed = a->kind == ATOM_SOLUTION && system_of(a, a->operand).n > LISTED_EQUATIONS;
+	if (listed)
+		list_system(l, a, level);
+	return l->level[a->index] = level + listed;
+}
+
+static int level_of_form(struct listing *l, const struct form *form)
+{
+	int level = 1;
+	for (int i = 0; i < form->terms; i++) {
+		const struct atom *a = form->term[i].basis.atom;
+		const int inner = a ? level_of_atom(l, a) : 1;
+		level = inner > level ? inner : level;
+	}
+	return level;
+}
+
+static void set_entries(struct listing *l, const struct atom *a, int matrix)
+{
+	const struct linear_system e = system_of(a, a->operand);
+	for (int i = 0; i < e.n * e.n; i++)
+		if (e.M[i]->terms)
+			tape_set(l->f->tape, format("matrix_by_%d[%d]", matrix, i), tape_form(l->f, e.M[i]), 10, NULL);
+}
+
+static void set_right(struct listing *l, const struct listed *own, const struct tape_system *s)
+{
+	const struct linear_system e = system_of(own->atom, own->atom->operand);
+	for (int i = 0; i < e.n; i++)
+		if (e.f[i]->terms)
+			tape_set(l->f->tape, format("solved_by_%d[%d]", s->number, i * s->rights + own->right),
+				 tape_form(l->f, e.f[i]), 10, NULL);
+}
+
+/* The right sides of one matrix that wait for as many systems; rights 0: there are none */
+static struct tape_system set_system(struct listing *l, int matrix, int level)
+{
+	struct tape_system s = { .number = l->systems, .matrix = matrix };
+	for (int i = 0; i < l->count; i++) {
+		struct listed *own = &l->listed[i];
+		const struct linear_system e = system_of(own->atom, own->atom->operand);
+		s.factored = s.factored || (own->matrix == matrix && own->level < level);
+		if (own->matrix != matrix || own->level != level)
+			continue;
+		own->right = s.rights++;
+		s.n = e.n;
+		s.M = e.M;
+	}
+	s.symmetric = s.rights > 0;
+	for (int i = 0; i < s.n * s.n && s.symmetric; i++)
+		s.symmetric = same_form(s.M[i], s.M[i % s.n * s.n + i / s.n]);
+	for (int i = 0, first = !s.factored; i < l->count && s.rights; i++) {
+		if (l->listed[i].matrix != matrix || l->listed[i].level != level)
+			continue;
+		if (first)
+			set_entries(l, l->listed[i].atom, matrix);
+		first = false;
+		set_right(l, &l->listed[i], &s);
+	}
+	l->systems += s.rights > 0;
+	return s;
+}
+
+static void take_solutions(struct listing *l, const struct tape_system *s, int level)
+{
+	for (int i = 0; i < l->count; i++) {
+		const struct listed *own = &l->listed[i];
+		if (own->matrix != s->matrix || own->level != level)
+			continue;
+		tape_ref *x = ARRAY(tape_ref, s->n);
+		for (int k = 0; k < s->n; k++)
+			x[k] = tape_operand(l->f->tape, TAPE_TABLE, k * s->rights + own->right,
+					    l->solver->table + s->number);
+		add_solution(l->f, own->atom, x);
+	}
+}
+
+/* What is set of one level is one run, which may be loops. */
+void tape_solve_by_lists(struct tape_forms *f, int count, const struct form *const *form,
+			 const struct tape_solver *solver)
+{
+	SCRATCH int *level = ARRAY(int, f->room + 1);
+	struct listing l = { .f = f, .solver = solver, .level = level };
+	int levels = 1;
+	for (int i = 0, own; i < count; i++) {
+		own = level_of_form(&l, form[i]);
+		levels = own > levels ? own : levels;
+	}
+	SCRATCH struct tape_system *system = ARRAY(struct tape_system, l.matrices + 1);
+	for (int at = 1; at < levels; at++) {
+		for (int m = 0; m < l.matrices; m++)
+			system[m] = set_system(&l, m, at);
+		for (int m = 0; m < l.matrices; m++) {
+			if (!system[m].rights)
+				continue;
+			tape_statement(f->tape, solver->solve(solver->context, &system[m]));
+			take_solutions(&l, &system[m], at);
+		}
+	}
 }
 
 /* ---- forms ---- */

@@ -112,6 +112,7 @@ struct roll *roll_new(struct printing *p)
 {
 	const int nodes = tape_length(p->t);
 	int values = 0, run = 0;
+	bool any = false;
 	struct roll *r = NEW(struct roll);
 	*r = (struct roll){ .run = ARRAY(int, nodes + 1), .depth = ARRAY(int, nodes + 1),
 			    .value = ARRAY(bool, nodes + 1), .inner = ARRAY(bool, nodes + 1),
@@ -121,16 +122,18 @@ struct roll *roll_new(struct printing *p)
 	for (int i = 0, end; i < tape_outs(p->t); i = end + 1) {
 		end = end_of_run(p->t, i);
 		const int more = claim(p, i, end, ++run);
-		r->rolls[i] = more > 0 && end - i + more >= p->to->rolls ? run : 0;
+		r->rolls[i] = end - i + more >= p->to->rolls ? run : 0;
+		any = any || r->rolls[i];
 		values += r->rolls[i] ? more : 0;
 		for (int k = 0; k < nodes && r->rolls[i]; k++)
 			r->value[k] = r->value[k] || (r->run[k] == run && is_value(p, k));
 	}
-	p->roll = values ? r : NULL;
-	if (!values)
+	p->roll = any ? r : NULL;
+	if (!any)
 		return NULL;
 	find_depths(p);
-	fprintf(p->out, "%*s%s values_by_0[%d];\n", p->indent, "", p->to->real, values);
+	if (values)
+		fprintf(p->out, "%*s%s values_by_0[%d];\n", p->indent, "", p->to->real, values);
 	fprintf(p->out, "%*sint turn_by_0;\n", p->indent, "");
 	return r;
 }

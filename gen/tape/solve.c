@@ -5,6 +5,23 @@
  * all states takes no operation. */
 #include "tape/tape.h"
 
+int *factor_columns(int n, bool *filled, int *first)
+{
+	int count = 0, *before = ARRAY(int, n * n + 1);
+	for (int k = 0; k < n; k++)
+		for (int i = k + 1; i < n; i++)
+			for (int j = k + 1; j < n && filled[i * n + k]; j++)
+				filled[i * n + j] = filled[i * n + j] || filled[k * n + j];
+	for (int i = 0; i < n; i++) {
+		first[i] = count;
+		for (int j = 0; j < i; j++)
+			if (filled[i * n + j])
+				before[count++] = j;
+	}
+	first[n] = count;
+	return before;
+}
+
 struct tape_factors {
 	struct tape *t;
 	int n;

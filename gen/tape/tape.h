@@ -129,7 +129,25 @@ tape_ref tape_form_in_time(struct tape *t, const struct form *form);
 tape_ref tape_condition(struct tape_forms *f, const struct form *condition);
 void tape_name_lets(struct tape_forms *f);      /* once all forms are in */
 
+/* More equations than this are solved by lists of the columns in which their factors are not 0. */
+enum { LISTED_EQUATIONS = 12 };
+/* Of one matrix M, symmetric or not: as many right sides as are known at once. In C matrix_by_M, and solved_by_NUMBER,
+ * [n][rights], TAPE_TABLE of `part` `number` more than the reader's */
+struct tape_system { int number, matrix, n, rights; bool symmetric, factored; const struct form *const *M; };
+struct tape_solver {
+	const char *(*solve)(const void *context, const struct tape_system *system); /* the C, once all is set */
+	const void *context;
+	int table;
+};
+/* Solutions of many equations in these forms, of those that were counted: from here on they are operands. */
+void tape_solve_by_lists(struct tape_forms *f, int count, const struct form *const *form,
+			 const struct tape_solver *solver);
+
 /* ---- solve.c: linear equations ---- */
+
+/* n x n, where entries or those across the diagonal are not 0, becomes where the factors are not; first[n + 1]: where
+ * the columns before row i begin in the list that is returned */
+int *factor_columns(int n, bool *filled, int *first);
 
 struct tape_factors;
 /* Of M, n x n, row by row; TAPE_NONE: the entry is 0 for all states. Rows are eliminated in their order. */

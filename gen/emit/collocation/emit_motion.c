@@ -411,6 +411,8 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 	struct reading how = { .by_intervals = has_switching(e), .when = when_text(e, r) };
 	struct formulas *f = formulas_new(e, how, count, form);
 	struct tape *t = formulas_tape(f);
+	if (m->listed && forces)
+		solve_formulas_by_lists(f, count, form);
 	for (int i = 0; i < count; i++) {
 		const bool slope = forces && i >= m->coords;
 		tape_ref value = formula(f, form[i]);
@@ -426,10 +428,11 @@ static struct formulas *formulas_of_part(const struct emitter *e, const struct r
 
 /* ---- functions of them: what an interval decides is not read ---- */
 
-static void close_motion(const struct emitter *e, const struct tape *t, const struct reads *read, bool moves)
+/* node: `part` of TAPE_TABLE that is known; negative: any */
+static void close_motion(const struct emitter *e, const struct tape *t, const struct reads *read, int node, bool moves)
 {
 	close_function(e, spell(e, "%s%s%s",
-				any_known(e, read) || tape_reads(t, TAPE_TABLE, -1, -1) ||
+				any_known(e, read) || tape_reads(t, TAPE_TABLE, -1, node) ||
 					tape_reads(t, TAPE_TIME, -1, 1) ? "" : "node ",
 				tape_reads(t, TAPE_ABOVE, -1, -1) || tape_reads(t, TAPE_HELD, -1, -1)
 					? "" : "interval ",
@@ -449,7 +452,7 @@ static void emit_series_body(const struct emitter *e, const struct reads *r, enu
 	emit_series_tape(&here, made);
 	say(e, "%s%s", tape_reads(t, TAPE_TIME, -1, 1) || !decides(e) ? "" : "    (void)when;\n",
 	    tape_reads(t, TAPE_TABLE, -1, -1) || !e->step->taylor.switching->slots ? "" : "    (void)force;\n");
-	close_motion(e, t, &read, tape_reads(t, TAPE_STATE, -1, -1));
+	close_motion(e, t, &read, -1, tape_reads(t, TAPE_STATE, -1, -1));
 }
 
 static void emit_motion_body(const struct emitter *e, const struct reads *r, enum motion_part part)
@@ -459,10 +462,11 @@ static void emit_motion_body(const struct emitter *e, const struct reads *r, enu
 	formulas_finish(f);
 	struct reads read = reads_of_formulas(f);
 	emit_motion_locals(e, r, &read);
+	emit_solved_locals(f);
 	emit_formulas(f, 4);
 	if (part == THE_SLOPES_TOO && motion(e)->entries == 0)
 		say(e, "    slope[0] = 0.0;\n");
-	close_motion(e, t, &read, any_of(read.state, e->system->states));
+	close_motion(e, t, &read, TABLE_NODE, any_of(read.state, e->system->states));
 }
 
 static void emit_part(const struct emitter *e, const struct reads *r, enum motion_part part)
@@ -492,6 +496,11 @@ void emit_motion(const struct emitter *e)
 {
 	struct reads r = reads_of_motion(e);
 	emit_known(e, &r);
+	if (motion(e)->listed) {
+		emit_solved_tables(formulas_of_part(e, &r, THE_SLOPES_TOO));
+		emit_sizes(e, "lines.h", { "SOLVES", 1 });
+		say_include(e, "lines.h");
+	}
 	emit_part(e, &r, THE_SLOPES_TOO);
 	if (splits(e))
 		emit_part(e, &r, THE_FORCES);

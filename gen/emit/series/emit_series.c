@@ -2,6 +2,7 @@
 /* The coefficients of a series as C: their tape under the names of states and letters. */
 #include "inner.h"
 #include "emit/steps.h"
+#include "step/collocation/collocation.h"
 #include "step/series/expansion.h"
 
 #include <string.h>
@@ -103,7 +104,7 @@ static const char *solver(const void *context, const struct linear_equations *q,
 	const int n = q->n, i = q->number;
 	return factors ? spell(e, "$n_factor_by_lists(%d, %d, $n_first_of_%d, $n_before_%d, matrix_by_%d);", n,
 			       is_symmetric_system(q), i, i, i)
-		       : spell(e, "$n_solve_by_lists(%d, $n_first_of_%d, $n_before_%d, matrix_by_%d, solved_by_%d);",
+		       : spell(e, "$n_solve_by_lists(%d, 1, $n_first_of_%d, $n_before_%d, matrix_by_%d, solved_by_%d);",
 			       n, i, i, i, i);
 }
 
@@ -130,7 +131,7 @@ static bool calls_stage(const struct expansion *x, enum stage_kind kind)
 
 static void emit_factor_lists(const struct emitter *e, const struct linear_equations *q)
 {
-	int *first = ARRAY(int, q->n + 1), *before = factor_columns(q, first);
+	int *first = ARRAY(int, q->n + 1), *before = system_columns(q, first);
 	say(e, "\n/* Factors of the matrix of %d equations: where the columns of each row begin that are not 0, "
 	       "and these columns */\n", q->n);
 	emit_integers(e, "short", format("first_of_%d", q->number), q->n + 1, first);
@@ -162,7 +163,7 @@ void emit_series_loop_tables(const struct emitter *e)
 		const struct linear_equations *q = listed_at(x, i);
 		if (q)
 			emit_factor_lists(e, q);
-		solves = solves || q;
+		solves = solves || (q && !(e->step->collocation && e->step->collocation->motion->listed));
 	}
 	emit_sizes(e, "lines.h", { "INNERS", calls_stage(x, STAGE_INNER) }, { "SQUARES", calls_stage(x, STAGE_SQUARE) },
 		   { "DIVIDED", calls_stage(x, STAGE_QUOTIENT) }, { "POWERS", calls_stage(x, STAGE_POWER) },

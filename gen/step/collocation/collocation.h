@@ -39,6 +39,7 @@ struct motion {
 	/* per coordinate: without what depends on time alone in the linear part, which there is where it is driven;
 	 * beside contacts there are no forms, of slopes neither: set_motion says them */
 	const struct form **force;
+	bool listed;                /* many equations give them: solved by lists */
 	bool *driven;
 	int columns;                /* of the loads */
 	double *load, *input;       /* [segment][coordinate][column]; [coordinate][input][value, slope] */

@@ -146,6 +146,17 @@ static void find_entries(struct motion *m, const struct step *step)
 
 /* ---- the whole ---- */
 
+static bool any_listed(const struct step *step, const struct motion *m)
+{
+	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(step->model->equations.atoms));
+	for (int i = 0; i < m->coords; i++)
+		for (const struct form_term **term = terms_within(m->force[i], seen); *term; term++) {
+			const struct atom *a = (*term)->basis.atom;
+			any = any || (a && a->kind == ATOM_SOLUTION && system_of(a, a->operand).n > LISTED_EQUATIONS);
+		}
+	return any;
+}
+
 struct motion *motion_of(const struct step *step)
 {
 	enum { TOGETHER = 4 };          /* beyond, what all stages together cost grows past what exact slopes save */
@@ -172,5 +183,6 @@ struct motion *motion_of(const struct step *step)
 		add_entries(m, step, &layout, row, i);
 	}
 	find_drive(m, step, &layout, slopes);
+	m->listed = any_listed(step, m);
 	return m;
 }

@@ -93,8 +93,7 @@ void set_lines(struct recurrences *r, const struct expansion *x);
 const char *stage_index(int offset);        /* C: k + offset */
 bool is_listed(const struct linear_equations *e);
 bool is_symmetric_system(const struct linear_equations *e);
-/* first[n + 1]: where the columns before row i of its factors begin in the list that is returned */
-int *factor_columns(const struct linear_equations *e, int *first);
+int *system_columns(const struct linear_equations *e, int *first); /* as factor_columns */
 
 /* ---- slope.c: the derivative of a state ---- */
 

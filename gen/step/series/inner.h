@@ -24,9 +24,9 @@ int sequence_operands(const struct sequence *s, int **operand);
 
 /* ---- lines.c: a long series as a loop over k ---- */
 
-/* Multiplications, beyond which a series is a loop: where straight code leaves the cache of instructions. And equations
- * beyond which they are solved by lists; k of the loop, in the place of a number */
-enum { LOOPED_SERIES = 5000, LISTED_EQUATIONS = 12, STAGE = 1 << 16 };
+/* Multiplications, beyond which a series is a loop: where straight code leaves the cache of instructions; k of the
+ * loop, in the place of a number */
+enum { LOOPED_SERIES = 5000, STAGE = 1 << 16 };
 struct lines *lines_of(const struct expansion *x, int states);
 int stage_value(struct lines *l, struct stage_value value);              /* its number, made once */
 int stage_factors(struct lines *l, const double *factor, int count);     /* likewise; behind `count` they are 0 */

@@ -151,31 +151,13 @@ bool is_symmetric_system(const struct linear_equations *e)
 	return true;
 }
 
-/* Where factors are not 0, rows eliminated in their order */
-static void fill_in(int n, bool *filled)
-{
-	for (int k = 0; k < n; k++)
-		for (int i = k + 1; i < n; i++)
-			for (int j = k + 1; j < n && filled[i * n + k]; j++)
-				filled[i * n + j] = filled[i * n + j] || filled[k * n + j];
-}
-
-int *factor_columns(const struct linear_equations *e, int *first)
+int *system_columns(const struct linear_equations *e, int *first)
 {
 	const int n = e->n;
-	int count = 0, *before = ARRAY(int, n * n + 1);
 	SCRATCH bool *filled = ARRAY(bool, n * n);
 	for (int i = 0; i < n * n; i++)
 		filled[i] = e->matrix[i] != NONE || e->matrix[i % n * n + i / n] != NONE;
-	fill_in(n, filled);
-	for (int i = 0; i < n; i++) {
-		first[i] = count;
-		for (int j = 0; j < i; j++)
-			if (filled[i * n + j])
-				before[count++] = j;
-	}
-	first[n] = count;
-	return before;
+	return factor_columns(n, filled, first);
 }
 
 /* ---- its C ---- */
