@@ -51,6 +51,15 @@ static void PL(seed)(PL(d) *ds, int first, const real *scale)
 }
 #endif
 
+/* What ds has need not fulfil what the model's states do: it has no time, for beside.h. */
+static void PL(as_seeds)(PL(d) *ds)
+{
+#if PL_BESIDE
+    ds->time = (real)-0x1p120;
+#endif
+    (void)ds;
+}
+
 /* 0 of peaks, which follow no state */
 static real PL(worth)(const real *w, int o)
 {
@@ -160,6 +169,7 @@ static void PL(state_back)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real lam
     for (first = 0; first < PL_STATES; first += PL_DERIVATIVES) {
         b->seeded = *s;
         PL(seed)(&b->ds, first, scale);
+        PL(as_seeds)(&b->ds);
         PL(step_d)(&b->seeded, &b->ds PL_TAKES PL_ALONG);
         for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
             j = first + p;
@@ -214,6 +224,7 @@ static void PL(alone)(const PL_TYPE *s, PL(back_work) *b PL_GIVES, real before, 
     (void)now;
 #endif
     PL(set_d)(&b->alone, NULL);
+    PL(as_seeds)(&b->alone);
 #if PL_BY_PHI
     if (w == NULL || !PL_DECLARED) {
         PL(move_d)(s, &b->alone PL_TAKES PL_ALONG);
@@ -362,6 +373,7 @@ static void PL(stride_back)(const PL_TYPE *s, PL(back_work) *b, size_t n, const 
     }
     w = some ? w : NULL;
     PL(set_d)(&b->alone, NULL);
+    PL(as_seeds)(&b->alone);
     PL(worth_of)(s, b, &b->alone, n, w, lam, b->worth);
     for (p = 0; p < PL_DERIVATIVES; p++) {
         pb[p] += b->worth[p];
@@ -369,6 +381,7 @@ static void PL(stride_back)(const PL_TYPE *s, PL(back_work) *b, size_t n, const 
     }
     for (first = 0; first < PL_STATES; first += PL_DERIVATIVES) {
         PL(seed)(&b->ds, first, scale);
+        PL(as_seeds)(&b->ds);
         PL(worth_of)(s, b, &b->ds, n, w, lam, b->seeded_worth);
         for (p = 0; p < PL_DERIVATIVES && first + p < PL_STATES; p++) {
             b->lam[first + p] = (b->seeded_worth[p] - b->worth[p]) / scale[p];

@@ -10,6 +10,7 @@
  *     PL_DECLARED                  1: outputs are declared; else they are the states
  *     PL_ENDED(b)                whether b has no more of a series in hand, so that its states may be written
  *     PL_PAST_SAMPLES            of an input before the last
+ *     PL_CONSTRAINTS             1: some hold, and PL(project_rounded) of constraints.h
  *     PL_SEGMENTS, PL_PLACES     spans of time in which loads have a formula each; 1: PL(place) follows a state
  *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
@@ -115,6 +116,14 @@ static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
     PL(take_samples)(b, s, ds);
     if (!PL(is_left)(b, s, ds, z)) {
         PL(set)(b, PL_OF(time)(s), z);
+#if PL_CONSTRAINTS
+        /* Seeds, which have no time (back.h), need not fulfil the derivatives of the constraints: what they miss would
+         * go other ways by other steps, and the derivatives of a step were not linear in them. */
+        if (ds->time <= (real)-0x1p120) {
+            (void)PL(project_rounded)(b, 0, z);
+            PL(set)(b, PL_OF(time)(s), z);
+        }
+#endif
 #if PL_SEGMENTS > 1
         /* its time is counted in steps, not rounded: what changes now has changed */
         b->t0 = s->t0;

@@ -27,7 +27,10 @@
  *                                bit i where x_i is never above 1
  *     PL_FEW                     crossings by few.h, which is included then; 0: none
  *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of
- *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables */
+ *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables;
+ *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h},
+ *                                which is in PL_WHOLE_STEP
+ *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free */
 #include "numbers.h"
 
 /* ---- what the search goes by ---- */
@@ -420,20 +423,26 @@ static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
 }
 #endif
 
-/* s over h by that, or by the search.  x has no place in memory there, which each step would have to fill. */
+/* By the search.  x has no place in memory there, which each step would have to fill. */
+static PL_INLINE void PL(seek_again)(PL_TYPE *s, const real x[PL_VECTOR])
+{
+    real again[PL_VECTOR];
+    volatile real *const from = again;
+    int i;
+    PL_EACH
+    for (i = PL_SOFT ? 0 : PL_STATES; i < PL_VECTOR; i++) {
+        from[i] = x[i];
+    }
+    PL(by_search)(s, again);
+}
+
+/* s over h by that, or by the search */
 static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
 {
     if (PL_SOFT) {
         PL(by_search)(s, x);
     } else if (!PL(unmet_here)(s, x)) {
-        real again[PL_VECTOR];
-        volatile real *const from = again;
-        int i;
-        PL_EACH
-        for (i = PL_STATES; i < PL_VECTOR; i++) {
-            from[i] = x[i];
-        }
-        PL(by_search)(s, again);
+        PL(seek_again)(s, x);
     }
 }
 #endif
@@ -493,6 +502,56 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
 #endif
     pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
     ds->status = ds->doubt.status;
+}
+#endif
+
+#if PL_SHARED
+/* row . x, of so many entries */
+static PL_INLINE real PL(part_of_row)(const real *row, const real *x, int entries)
+{
+    real sum = 0;
+    int j;
+    PL_UNROLL
+    for (j = 0; j < entries; j++) {
+        sum += row[j] * x[j];
+    }
+    return sum;
+}
+
+/* The same over h, of which it is sure that x, where the step began, meets nothing in it: S+ = Phi S + Phi_p x */
+static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], real S[PL_COLUMNS_D + 1][PL_SIZE],
+                                    PL_D *ds)
+{
+    const real *Phi = PL_WHOLE_STEP[s->contact.matrix][0], *over = PL_VARIED_STEP;
+    int i, p;
+    if (over == NULL) {
+        real from[PL_VECTOR];
+        for (i = 0; i < PL_SIZE; i++) {
+            from[i] = x[i];
+        }
+        PL(vary)(s, PL_H, from, s->contact, S, ds);
+        return;
+    }
+    for (p = 0; p < PL_COLUMNS_D; p++) {
+        const real *const change = over + (p * PL_MATRICES_D + s->contact.matrix) * PL_SIZE * PL_SIZE;
+        for (i = 0; i < PL_STATES; i++) {
+            S[p][i] = ds->s[p][PL_PLACE(i)];
+        }
+        for (i = 0; i < PL_STATES; i++) {
+            const int row = i * PL_SIZE;
+            real sum = PL_ACTING_D(p) ? PL(part_of_row)(Phi + row, S[p], PL_SIZE)
+                                      : PL(part_of_row)(Phi + row, S[p], PL_STATES);
+            if (PL_MOVING_D(p)) {
+                sum += PL(part_of_row)(change + row, x, PL_SIZE);
+            }
+            ds->s[p][PL_PLACE(i)] = sum;
+        }
+    }
+    for (i = 0; i < PL_STATES; i++) {
+        if (pl_magnitude(x[i]) > ds->scale[PL_PLACE(i)]) {
+            ds->scale[PL_PLACE(i)] = pl_magnitude(x[i]);
+        }
+    }
 }
 #endif
 

@@ -3,9 +3,11 @@
  * this model alone. */
 #undef PL
 #undef PL_ACTING
+#undef PL_ACTING_D
 #undef PL_ADAPTIVE
 #undef PL_ADVANCE
 #undef PL_AHEAD
+#undef PL_MOVING_D
 #undef PL_READY
 #undef PL_ALL
 #undef PL_ALL_OF
@@ -17,6 +19,7 @@
 #undef PL_AT
 #undef PL_DECLARED
 #undef PL_BESIDE
+#undef PL_SHARED
 #undef PL_STRIDE
 #undef PL_TUNED
 #undef PL_BOTH
@@ -326,6 +329,7 @@
 #undef PL_VALUE
 #undef PL_VECTOR
 #undef PL_VARIED_STEP
+#undef PL_WHOLE_STEP
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WAY

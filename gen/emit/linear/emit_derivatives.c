@@ -128,10 +128,9 @@ void emit_derivative_declarations(const struct emitter *e)
 	if (has_values_between(e))
 		announce(e, spell(e, "void   $n_at_d(const $n *s, const $n_d *ds%s, double tau, "
 				     "double S[$N_D][$N_STATES]);", input_parameters(e)), "");
-	announce(e, spell(e, "void   $n_run_d($n *s, $n_d *ds, size_t n%s%s, double *out, double *J);",
-			  given_inputs(e) ? ", const double *u" : "", d->seeded ? ", const double *du" : ""),
+	const char *u = given_inputs(e) ? ", const double *u" : "", *du = d->seeded ? ", const double *du" : "";
+	announce(e, spell(e, "void   $n_run_d($n *s, $n_d *ds, size_t n%s%s, double *out, double *J);", u, du),
 		 "out, J: n rows, or NULL");
-	const char *u = given_inputs(e) ? ", const double *u" : "";
 	const char *backwards = "A cost backwards: from w, its derivatives by the outputs behind a step, and lam, "
 				"those by the state there, to those by the state before it; pb of each column%s are "
 				"added to.  $n_gradient goes over n steps from s, with n rows of w or NULL, and room "
@@ -334,6 +333,7 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "OWN_OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
 		   { "TUNED", b->step->is.tuned }, { "SEGMENTS", b->system->segments }, { "PLACES", has_place(b) },
+		   { "CONSTRAINTS", b->model->equations.correction != NULL },
 		   { "FROM", block->first }, { "WIDE", block->columns }, { "DECLARED", e->model->declared_outputs });
 	emit_moved_columns(b);
 	say(e, "#define PL_OF(name) %s_##name\n"
@@ -413,15 +413,16 @@ static void emit_move(const struct emitter *e)
 
 static void emit_step_of_all(const struct emitter *e)
 {
-	const struct derivatives *d = e->step->derivatives;
-	if (d->apart) {
+	if (e->step->derivatives->apart) {
 		emit_steps_beside(e);
 		return;
 	}
-	emit_move(e);
+	if (!shares_step(e))
+		emit_move(e);
 	open_step(e);
-	say(e, "    $n_move_d(s, ds%s);\n", input_arguments(e));
-	say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
+	say(e, "    $n_%s(s, ds%s);\n", shares_step(e) ? "step_both" : "move_d", input_arguments(e));
+	if (!shares_step(e))
+		say(e, "    $n_step(s%s);\n", given_inputs(e) ? ", u" : "");
 	emit_keep_seeds(e);
 	close_function(e, "");
 }
@@ -437,11 +438,10 @@ static void emit_at_of_all(const struct emitter *e)
 		close_function(e, "");
 		return;
 	}
-	const bool apart = e->step->derivatives->apart;
-	if (!apart)
+	if (!e->step->derivatives->apart)
 		emit_state_now(e);
 	for (int b = 0; b < e->step->derivatives->blocks; b++)
-		if (apart)
+		if (e->step->derivatives->apart)
 			say(e, "    %s_at_beside(s, ds, &ds->block%d, %s, tau, S);\n", e->beside[b].name, b,
 			    samples_beside(e));
 		else

@@ -367,6 +367,14 @@ void emit_event_check(const struct emitter *e)
 	    !e->model->params.retuned              ? shortest(pieces.large)
 	    : is_checked_by_tables(e->step) ? "c->large[which]"
 					    : "c->large[s->contact.matrix]");
+	if (shares_step(e)) {
+		say(e, "        if (ds != NULL) {\n"
+		       "            double now[%d];\n", size_of_vector(e));
+		for (int j = 0; j < layout->size; j++)
+			say(e, "            now[%d] = %s;\n", j, *x[j] ? x[j] : "1.0");
+		emit_shared_call(e, "vary_clear", "now");
+		say(e, "        }\n");
+	}
 	for (int i = 0; i < e->system->states; i++)
 		say(e, "        s->y[%d] = end%d;\n", place_of_state(e, i), i);
 	for (int i = 0; i < e->system->states && is_compensated(e); i++)
@@ -379,6 +387,8 @@ void emit_event_check(const struct emitter *e)
 	for (int j = 0; j < layout->size && is_compensated(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->low[%d]", place_of_state(e, j)) : "0.0");
+	if (shares_step(e))
+		emit_shared_call(e, "vary_all", spell(e, "$N_H"));
 	say(e, e->step->regions.event_check.fast_path ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
 				"    }\n"
 			      : "        $o_seek(s, now);\n"

@@ -411,7 +411,16 @@ static void emit_searched_step(const struct emitter *e)
 	emit_set_aside(e);
 	emit_rotated_loads(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	say(e, "    $o_seek(s, x);\n");
+	if (shares_step(e)) {
+		say(e, "    if ($o_unmet_here(s, x)) {\n");
+		emit_shared_call(e, "vary_clear", "x");
+		say(e, "    } else {\n");
+		emit_shared_call(e, "vary_all", spell(e, "$N_H"));
+		say(e, "        $o_seek_again(s, x);\n"
+		       "    }\n");
+	} else {
+		say(e, "    $o_seek(s, x);\n");
+	}
 	emit_take_back(e);
 	emit_step_end(e);
 	emit_segment_end(e);
@@ -542,6 +551,9 @@ void declare_region_search(const struct emitter *e)
 	say(e, "\n"
 	       "/* The search for events over a step, or over its remaining part */\n"
 	       "static void $o_seek($n *s, double x[%d]);\n", size_of_vector(e));
+	if (shares_step(e) && has_guards(e))
+		say(e, "static int $o_unmet_here($n *s, double x[%d]);\n"
+		       "static void $o_seek_again($n *s, const double x[%d]);\n", size_of_vector(e), size_of_vector(e));
 	if (e->step->regions.event_check.fast_path)
 		say(e, "/* Follows the events of a step if they are few and certain: 1; else s is unchanged: 0 */\n"
 		       "static int $o_cross($n *s, const double now[%d]);\n", size_of_vector(e));
@@ -549,14 +561,19 @@ void declare_region_search(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
-	open_function(e, NULL, "%s", head_of_step(e));
+	if (shares_step(e)) {
+		declare_shared_step(e);
+		open_shared_step(e);
+	} else {
+		open_function(e, NULL, "%s", head_of_step(e));
+	}
 	if (e->step->regions.event_check.is_made && !has_guards(e))
 		emit_full_step(e);
 	else
 		emit_searched_step(e);
 	if (e->step->carried.count)           /* saved states are in no bound */
 		emit_region_status(e);
-	close_function(e, "");
+	shares_step(e) ? close_shared_step(e) : close_function(e, "");
 }
 
 void emit_region_at(const struct emitter *e)

@@ -9,11 +9,10 @@
 /* z = t^k e^{a t} (cos, sin)(w t + p): z_w = t J z, z_p = J z, z_a = t z */
 static void emit_varied_load(const struct emitter *e, int column, int load, int from)
 {
-	const struct varied_model *v = &e->step->shown->derivatives->varied[column];
-	const struct forcing *more = v->more->system.load[load].forcing, *less = v->less->system.load[load].forcing;
-	const double a = varied_number(v, more->a, less->a), w = varied_number(v, more->w, less->w),
-		     p = varied_number(v, more->p, less->p);
-	for (int k = 0; k < e->system->load[load].columns && (a != 0 || w != 0 || p != 0); k++) {
+	struct varied_load by;
+	const bool varies = vary_load(e, column, load, &by);
+	const double a = by.a, w = by.w, p = by.p;
+	for (int k = 0; k < e->system->load[load].columns && varies; k++) {
 		struct summands sum = { 0 };
 		const bool turns = mpq_sgn(e->system->load[load].forcing->w) != 0;
 		const double sign = k % 2 ? 1 : -1;
@@ -26,12 +25,6 @@ static void emit_varied_load(const struct emitter *e, int column, int load, int 
 			add_summand(&sum, scaled(sign * p, other));
 		say(e, "    S[%d][%d] = %s;\n", column, from + k, sum_of(&sum, 16));
 	}
-}
-
-int varies_params(const struct emitter *e)
-{
-	const struct derivatives *d = e->step->shown->derivatives;
-	return d && d->varied && (e->model->params.retuned || e->model->spec->tuned.derived > 0);
 }
 
 /* Params that act as inputs do, and vary as NAME_vary_params says */
@@ -75,20 +68,30 @@ static void emit_varied_input(const struct emitter *e, int column)
 	}
 }
 
-static const char *samples_text(const struct emitter *e, const char *type, const char *size)
+/* Of S what is of loads and inputs */
+static void emit_acting_beside(const struct emitter *e)
 {
-	const char *u = given_inputs(e) ? spell(e, format(", %su%s", type, size)) : "";
-	return e->step->shown->derivatives->seeded ? spell(e, format("%s, %sdu%s", u, type, size)) : u;
+	const struct layout *layout = &e->step->layout;
+	emit_params_now(e);
+	for (int p = 0; p < e->step->shown->derivatives->columns; p++) {
+		for (int l = 0; l < e->system->loads; l++)
+			if (layout->load[l] >= 0)
+				emit_varied_load(e, p, l, layout->load[l]);
+		emit_varied_input(e, p);
+	}
 }
 
-static const char *sample_parameters(const struct emitter *e)
+/* ds over an event-free step, in which s may be already; x: where it began */
+static void emit_clear_step(const struct emitter *e)
 {
-	return samples_text(e, "const double ", "[$N_INPUTS]");
-}
-
-static const char *sample_arguments(const struct emitter *e)
-{
-	return samples_text(e, "", "");
+	open_function(e, NULL, "static PL_INLINE void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d])",
+		      sample_parameters(e), size_of_vector(e));
+	say(e, "    const double t = $n_time(s);\n"
+	       "    double S[$N_D + 1][%d] = {{0.0}};\n", e->step->layout.size);
+	declare_varied_params(e);
+	emit_acting_beside(e);
+	say(e, "    $o_vary_free(s, x, S, ds);\n");
+	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
 }
 
 /* ds over tau, from s */
@@ -111,13 +114,7 @@ static void emit_varied_step(const struct emitter *e)
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
 		say(e, "    $n_get(s, x);\n");
-	emit_params_now(e);
-	for (int p = 0; p < e->step->shown->derivatives->columns; p++) {
-		for (int l = 0; l < e->system->loads; l++)
-			if (needed[l])
-				emit_varied_load(e, p, l, layout->load[l]);
-		emit_varied_input(e, p);
-	}
+	emit_acting_beside(e);
 	say(e, "    $o_vary(s, tau, x, contact, S, ds);\n");
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
 }
@@ -155,6 +152,8 @@ void emit_all_varied(const struct emitter *e)
 	} else {
 		each_part(e, emit_varied_step);
 	}
+	if (shares_step(e))
+		emit_clear_step(e);
 	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
 	say(e, "    const unsigned known = ds->status;\n"
 	       "    int i;\n");

@@ -56,6 +56,17 @@ struct variation;
 void put_entries(const struct emitter *e, bool own, const char *name, const struct variation *v);
 void emit_variation_macros(const struct emitter *e);
 const char *no_variation(const struct emitter *e);                /* a last argument of the search; or nothing */
+/* How the forcing of a load varies with a column; whether it does, or whether any load or input does */
+struct varied_load { double a, w, p; };
+bool vary_load(const struct emitter *e, int column, int load, struct varied_load *by);
+bool acts_beside(const struct emitter *e, int column);
+/* A step that derivatives share, in which ds goes on by NAME_vary_all or NAME_vary_clear; samples: u, du */
+const char *sample_parameters(const struct emitter *e);
+const char *sample_arguments(const struct emitter *e);
+void declare_shared_step(const struct emitter *e);
+void open_shared_step(const struct emitter *e);
+void emit_shared_call(const struct emitter *e, const char *function, const char *last);
+void close_shared_step(const struct emitter *e);
 
 /* ---- emit_parts.c: the parts, each as it would be alone ---- */
 

@@ -413,6 +413,57 @@ static void emit_varied_steps(const struct emitter *e, const double *over)
 	close_table(e);
 }
 
+int varies_params(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	return d && d->varied && (e->model->params.retuned || e->model->spec->tuned.derived > 0);
+}
+
+bool vary_load(const struct emitter *e, int column, int load, struct varied_load *by)
+{
+	const struct varied_model *v = &e->step->shown->derivatives->varied[column];
+	const struct forcing *more = v->more->system.load[load].forcing, *less = v->less->system.load[load].forcing;
+	*by = (struct varied_load){ varied_number(v, more->a, less->a), varied_number(v, more->w, less->w),
+				    varied_number(v, more->p, less->p) };
+	return by->a != 0 || by->w != 0 || by->p != 0;
+}
+
+bool acts_beside(const struct emitter *e, int column)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	struct varied_load by;
+	bool any = d->column[column].symbol->kind == SYMBOL_INPUT || varies_params(e) ||
+		   tunable_of_column(e->step, column) >= 0;
+	for (int l = 0; l < e->system->loads && !any; l++)
+		any = e->step->layout.load[l] >= 0 && vary_load(e, column, l, &by);
+	return any;
+}
+
+static void emit_whole_steps(const struct emitter *e)
+{
+	const int branches = e->step->branches, size = e->step->layout.size;
+	double **whole = ARRAY(double *, (size_t)branches);
+	for (int k = 0; k < branches; k++)
+		whole[k] = full_step_of(e->step, k);
+	put_matrices(e, "whole_step", "e^{A h} of each linear system, where pieces are shorter", branches, size, size,
+		     whole, layout_names(&e->step->layout, e->system, e->model));
+}
+
+/* Bit p of a macro: whether in column p e^{A h} varies, or loads and inputs do */
+static void emit_columns_that(const struct emitter *e, const char *macro, const double *over, bool move)
+{
+	const int columns = e->step->shown->derivatives->columns, size = e->step->layout.size,
+		  cells = e->step->branches * size * size;
+	unsigned long long bits = 0;
+	for (int p = 0; p < columns && over; p++) {
+		bool any = !move && acts_beside(e, p);
+		for (int i = 0; i < cells && move; i++)
+			any = any || over[p * cells + i] != 0;
+		bits |= (unsigned long long)any << p;
+	}
+	say_macro(e, macro, format("(UINT64_C(0x%llx) >> (p) & 1u)", bits));
+}
+
 void emit_variation(const struct emitter *e, const struct guards *g)
 {
 	if (!has_variation(e))
@@ -427,7 +478,12 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 		if (v.over)
 			emit_varied_steps(e, v.over);
 	}
+	if (any_pieces(e) && shares_step(e))
+		emit_whole_steps(e);
+	say_macro(e, "WHOLE_STEP", any_pieces(e) ? "PL(whole_step)" : "PL_OF(pieces)");
 	say_macro(e, "VARIED_STEP", v.over ? "PL_OF(varied_step)[0]" : "NULL");
+	emit_columns_that(e, "ACTING_D(p)", v.over, false);
+	emit_columns_that(e, "MOVING_D(p)", v.over, true);
 }
 
 void emit_own_variation(const struct emitter *e, const struct guards *g)
@@ -448,9 +504,62 @@ void emit_variation_macros(const struct emitter *e)
 	say_macro(e, "D", spell(e, "$n_d"));
 	say_macro(e, "MATRICES_D", integer_text(e->step->branches));
 	say_macro(e, "DEGREE_D", integer_text(e->step->series.degree + 3));
+	say_macro(e, "SHARED", integer_text(shares_step(e)));
+}
+
+bool shares_step(const struct emitter *e)
+{
+	return has_variation(e) && !e->step->shown->derivatives->regions && e->step->regions.event_check.is_made &&
+	       !e->part && !is_compensated(e) && !has_peaks(e) && !e->step->carried.count &&
+	       !(any_pieces(e) && e->model->params.retuned);
 }
 
 const char *no_variation(const struct emitter *e)
 {
 	return has_variation(e) ? ", (pl_variation *)0" : "";
+}
+
+/* ---- a step that derivatives share ---- */
+
+static const char *samples_text(const struct emitter *e, const char *type, const char *size)
+{
+	const char *u = given_inputs(e) ? spell(e, format(", %su%s", type, size)) : "";
+	return e->step->shown->derivatives->seeded ? spell(e, format("%s, %sdu%s", u, type, size)) : u;
+}
+
+const char *sample_parameters(const struct emitter *e)
+{
+	return samples_text(e, "const double ", "[$N_INPUTS]");
+}
+
+const char *sample_arguments(const struct emitter *e)
+{
+	return samples_text(e, "", "");
+}
+
+void declare_shared_step(const struct emitter *e)
+{
+	say(e, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau);\n"
+	       "static void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d]);\n",
+	    sample_parameters(e), sample_parameters(e), size_of_vector(e));
+}
+
+void open_shared_step(const struct emitter *e)
+{
+	open_function(e, "A step, and unless ds is NULL that of derivatives: where it is event-free is decided once",
+		      "static PL_INLINE void $n_step_both($n *s, $n_d *ds%s)", sample_parameters(e));
+}
+
+void emit_shared_call(const struct emitter *e, const char *function, const char *last)
+{
+	say(e, "        if (ds != NULL) { $n_%s(s, ds%s, %s); }\n", function, sample_arguments(e), last);
+}
+
+void close_shared_step(const struct emitter *e)
+{
+	const char *seeds = e->step->shown->derivatives->seeded ? ", NULL" : "";
+	close_function(e, e->step->shown->derivatives->seeded ? "du" : "");
+	open_function(e, NULL, "%s", head_of_step(e));
+	say(e, "    $n_step_both(s, NULL%s%s);\n", given_inputs(e) ? ", u" : "", seeds);
+	close_function(e, "");
 }

@@ -3,6 +3,8 @@
 #ifndef PLGEN_EMIT_REGIONS_H
 #define PLGEN_EMIT_REGIONS_H
 
+#include <stdbool.h>
+
 struct emitter;
 
 /* ---- emit_regions.c, emit_ladder.c: their tables, a step ---- */
@@ -31,6 +33,8 @@ void emit_parts_step(const struct emitter *e);
 void emit_parts_at(const struct emitter *e);
 /* NAME_vary_all(s, ds, [u, du,] tau): the derivatives go on by tau, from s */
 void emit_all_varied(const struct emitter *e);
+/* Whether a step and that of its derivatives are one, NAME_step_both, so that events are looked for once */
+bool shares_step(const struct emitter *e);
 /* What derivatives.h asks for those of outputs, rows over an x of so many entries */
 int emit_varied_outputs(const struct emitter *e);
 
