@@ -68,7 +68,7 @@ for model; do
 		andrews)
 			every=0.003
 			awk '/^===/ { on = $2 == "andrews" } /^---/ { on = 0 } on && !/^(===|tolerance|output)/' \
-				tests/mechanisms/mechanisms.cases >"$work/m.spec"
+				tests/jury/testset.cases >"$work/m.spec"
 			;;
 		[0-9]*)
 			first=$(seq -s '; ' 1 0.1 "$(awk -v n="$model" 'BEGIN { print 1 + (n - 1)/10 }')")

@@ -3,6 +3,30 @@
  * as they stand, in loops that are written out; more with pivots; those of many coordinates by the modes of the stages,
  * systems of the size of the coordinates, with the Jacobian of the step's start and one factorization for it. */
 
+#if PL_DIFFERENCES
+/* The highest derivatives at y and their Jacobian: each state is moved by half the digits of the largest of its kind.
+ * Newton's method takes it for what it is, so that its error is none of the step. */
+static void PL(linearize)(const real known[], const int interval[], const real y[PL_STATES], real left[], real slope[])
+{
+    real moved[PL_STATES], other[PL_COORDS], largest[3] = {0, 0, 0};
+    int i, j;
+    for (j = 0; j < PL_STATES; j++) {
+        const real size = pl_magnitude(moved[j] = y[j]);
+        largest[PL_KIND(j)] = size > largest[PL_KIND(j)] ? size : largest[PL_KIND(j)];
+    }
+    PL(forces)(known, interval, y, left);
+    for (j = 0; j < PL_STATES; j++) {
+        const real size = largest[PL_KIND(j)];
+        moved[j] = y[j] + PL_HALF_DIGITS * (size > 0 ? size : 1);
+        PL(forces)(known, interval, moved, other);
+        for (i = 0; i < PL_COORDS; i++) {
+            slope[i * PL_STATES + j] = (other[i] - left[i]) / (moved[j] - y[j]);
+        }
+        moved[j] = y[j];
+    }
+}
+#endif
+
 /* The sum over the nodes of row[j] k_j, `stride` apart: pairs first, the shortest chain of additions */
 #if PL_UNKNOWNS <= 10
 #define PL_WRITTEN_OUT PL_UNROLL

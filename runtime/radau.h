@@ -7,7 +7,7 @@
  *                                at_low, size, per, want, scale, unit, back, stop, ready beside y, rest, t0, k, status
  *     PL_STATES, PL_COORDS       coordinates are of first or second order: states are these, then the velocities
  *     PL_STAGES, PL_MODES        of the collocation; by how many modes of its stages they are solved, 0: all at once
- *     PL_ENTRIES                 of the Jacobian that are not 0
+ *     PL_ENTRIES                 of the Jacobian that are not 0; PL_DIFFERENCES: all are, row by row, of differences
  *     PL_INPUTS, PL_KNOWN        samples; numbers that the equations read beside the state
  *     PL_SEGMENTS                of time, in each of which the loads have a formula: member leg; 1: just one
  *     PL_SWITCHING_FUNCTIONS     that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
@@ -51,6 +51,7 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #define PL_NO_CHANGE ((real)1e-12)    /* of the states by an iteration */
 #define PL_NOTHING ((real)1e-35)      /* what may be divided by */
 #define PL_HUGE ((real)1e37)
+#define PL_HALF_DIGITS ((real)0x1p-12)
 #else
 #define PL_SHORTEST 1e-18
 #define PL_FIRST 1e-15
@@ -60,6 +61,7 @@ enum { PL_AT_ERROR, PL_AT_STEP, PL_AT_CHANGE, PL_AT_CROSSING };
 #define PL_NO_CHANGE 1e-17
 #define PL_NOTHING 1e-290
 #define PL_HUGE 1e300
+#define PL_HALF_DIGITS 0x1p-26
 #endif
 
 #define PL_UNKNOWNS (PL_STAGES * PL_COORDS)
@@ -115,6 +117,10 @@ static inline int PL(is_moved)(int i)
     return PL(highest_of)[PL(coord_of)[i]] != i;
 #endif
 }
+
+#if PL_DIFFERENCES
+static void PL(linearize)(const real known[], const int interval[], const real y[PL_STATES], real left[], real slope[]);
+#endif
 
 #define PL_AT_BREAKPOINTS 1
 #define PL_IN_PARTS 0

@@ -109,6 +109,7 @@
 #undef PL_END
 #undef PL_ENDED
 #undef PL_ENTRIES
+#undef PL_DIFFERENCES
 #undef PL_EVENT_COLUMNS
 #undef PL_EVENT_ORDER
 #undef PL_SWITCHING_FUNCTIONS
@@ -164,6 +165,7 @@
 #undef PL_HERE
 #undef PL_HIDDEN
 #undef PL_HUGE
+#undef PL_HALF_DIGITS
 #undef PL_IMPACTS
 #undef PL_INDEFINITE
 #undef PL_INPUTS

@@ -17,7 +17,16 @@ mkdir "$cases"
 awk -v at="$cases/" -v root="$root" '/^=== / { name = at $2; part = ".spec"; next }
 	name == "" { next }
 	/^---$/ { part = ".values"; next }
-	/^from / { file = root "/" $2; while ((getline line <file) > 0) print line >(name part); next }
+	/^from / {
+		on = NF == 2
+		for (file = root "/" $2; (getline line <file) > 0;) {
+			on = NF == 2 || (line == "=== " $3) || (on && line != "---")
+			if (on && line !~ /^===/)
+				print line >(name part)
+		}
+		close(file)
+		next
+	}
 	NF > 0 { print >(name part) }' "$root/tests/mechanisms/mechanisms.cases"
 
 # compared VALUES CSV WITHIN: the last row against the values; WITHIN in place of their tolerances. Prints what differs,

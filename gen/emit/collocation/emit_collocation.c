@@ -251,7 +251,8 @@ static void emit_include(const struct emitter *e)
 	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.switching;
 	emit_sizes(e, "radau.h", { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
 		   { "MODES", splits(e) ? e->step->collocation->modes : 0 },
-		   { "ENTRIES", e->step->collocation->motion->entries }, { "INPUTS", e->system->inputs },
+		   { "ENTRIES", e->step->collocation->motion->entries },
+		   { "DIFFERENCES", e->step->collocation->motion->differences }, { "INPUTS", e->system->inputs },
 		   { "KNOWN", known_values(e) }, { "SEGMENTS", e->system->segments },
 		   { "COLUMNS", e->system->states + (x ? x->columns : 0) }, { "TRIES", e->model->truncation.substeps },
 		   { "ORDER", x ? x->order : 0 }, { "SWITCHING_FUNCTIONS", d ? d->functions : 0 },

@@ -62,7 +62,7 @@ static const struct tape *set_part(const struct emitter *e, struct recurrences *
 {
 	const struct expansion *x = e->step->taylor.switching;
 	if (part != THE_SWITCHING) {
-		set_motion(e->step, r, part == THE_SLOPES_TOO);
+		set_motion(e->step, r, part == THE_SLOPES_TOO && !motion(e)->differences);
 		return tape_of_recurrences(r);
 	}
 	for (int i = 0; i < terms_of_events(e); i++)
@@ -501,7 +501,8 @@ void emit_motion(const struct emitter *e)
 		emit_sizes(e, "lines.h", { "SOLVES", 1 });
 		say_include(e, "lines.h");
 	}
-	emit_part(e, &r, THE_SLOPES_TOO);
+	if (!motion(e)->differences)
+		emit_part(e, &r, THE_SLOPES_TOO);
 	if (splits(e))
 		emit_part(e, &r, THE_FORCES);
 	if (has_switching(e))

@@ -128,9 +128,24 @@ void set_motion(const struct step *step, struct recurrences *r, bool slopes)
 	}
 }
 
+static void add_full_entries(struct motion *m, const struct linear *system)
+{
+	for (int i = 0; i < m->coords; i++)
+		for (int state = 0; state < system->states; state++)
+			*MORE(m->entry, m->entries) = (struct motion_entry){
+				.coord = i, .of = system->coord[state],
+				.twice = state < system->n && system->velocity[state] >= 0
+			};
+}
+
 static void find_entries(struct motion *m, const struct step *step)
 {
 	const struct linear *system = &step->branch->system;
+	m->differences = step->model->equations.moving_mass && system->n > LISTED_EQUATIONS;
+	if (m->differences) {
+		add_full_entries(m, system);
+		return;
+	}
 	struct recurrences *r = motion_recurrences(step);
 	tape_ref *by = ARRAY(tape_ref, system->states), zero = tape_number(tape_of_recurrences(r), 0);
 	for (int i = 0; i < m->coords; i++) {
