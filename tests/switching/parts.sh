@@ -129,4 +129,61 @@ EOF
 result $? 'parts in float: each as one alone'
 grep '^# ' log
 
+# Events beyond the most of one part are not those of another, nor written behind its list.
+cat >few_main.c <<'EOF'
+#include "few.h"
+#include "few_x.h"
+#include "few_y.h"
+#include <stdio.h>
+int main(void)
+{
+	few all;
+	few_x x;
+	few_y y;
+	int both = 0;
+	few_init(&all);
+	few_x_init(&x);
+	few_y_init(&y);
+	for (int k = 0; k < 200; k++) {
+		pl_crossing list[FEW_MAX_EVENTS], alone[2][2];
+		int count, of[2], seen[2] = {0, 0};
+		few_step(&all);
+		few_x_step(&x);
+		few_y_step(&y);
+		count = few_crossings(&all, list);
+		of[0] = few_x_crossings(&x, alone[0]);
+		of[1] = few_y_crossings(&y, alone[1]);
+		both += of[0] == 2 && of[1] > 0;
+		for (int i = 0; i < count && count == of[0] + of[1]; i++) {
+			const int part = list[i].expression, at = seen[part]++;
+			if (at >= of[part] || list[i].time < alone[part][at].time || list[i].time > alone[part][at].time)
+				seen[part] = 9;
+		}
+		if (seen[0] != of[0] || seen[1] != of[1]) {
+			printf("step %d: %d listed, %d and %d alone\n", k, count, of[0], of[1]);
+			return 1;
+		}
+	}
+	printf("# events of both in %d steps\n", both);
+	return !(both > 3 && few_status(&all) == few_x_status(&x) && few_status(&all) == PL_TOO_MANY_EVENTS);
+}
+EOF
+cat >few.spec <<'EOF'
+model few
+coord x, y
+init x = 1, y = 0.3
+x'' + 0.01*x' + 9000*x + 2000*max(x, 0) = 0
+y'' + 0.1*y' + 12*y + 30*max(y - 0.1, 0) = cos(2*t)
+step 0.2
+events at most 2 a step
+EOF
+{
+    "$plgen" -o few.c few.spec &&
+        sed '/^y/d; s/, y$//; s/, y = 0.3//' few.spec | "$plgen" --prefix few_x -o few_x.c - &&
+        sed '/^x/d; s/coord x, y/coord y/; s/x = 1, //' few.spec | "$plgen" --prefix few_y -o few_y.c - &&
+        $run_cc -I"$root/runtime" -I. few_main.c few.c few_x.c few_y.c "$archive" -o few && ./few
+} >log 2>&1
+result $? 'more events than a part may have: its own list alone'
+grep '^# ' log
+
 tap_end

@@ -329,7 +329,9 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "ALL", spell(e, "$N_STATES"));
 	say_macro(e, "WORK", room_text(e));
 	say_macro(e, "H", spell(e, "$N_H"));
-	say_macro(e, "MAX_EVENTS", functions_of(e) > 0 ? spell(e, "$N_MAX_EVENTS") : "0");
+	/* each part lists its own */
+	say_macro(e, "MAX_EVENTS", functions_of(e) == 0 ? "0" : e->step->shown->regions.parts
+		  ? integer_text(max_events(e->model)) : spell(e, "$N_MAX_EVENTS"));
 	say_macro(e, "PLACE(i)", place_in_loop(e));
 	say_macro(e, "PART", e->spelled.place);
 	say_macro(e, "LADDER", ladder);
