@@ -15,7 +15,7 @@
 #include <string.h>
 
 /* What a bound adds up */
-struct parts { double multiplications, additions, forcings, growths, states, flushed, compared, inputs; };
+struct parts { double multiplications, additions, forcings, growths, states, flushed, compared, inputs, ramps; };
 
 static bool holds_longer(const struct linear *system)
 {
@@ -53,10 +53,13 @@ static bool impacts_meet(const struct model *model)
 static const char *unbounded_search(const struct step *step)
 {
 	const struct switching *s = step->model->switching;
+	const char *why = NULL;
 	bool pieces = false;
-	for (int k = 0; k < step->branches; k++)
+	for (int k = 0; k < step->branches && !step->regions.parts; k++)
 		pieces = pieces || step->branch[k].halvings > 0;
-	return step->regions.parts	 ? "independent parts are searched one by one"
+	for (int p = 0; p < step->regions.parts && !why; p++)
+		why = unbounded_search(step->regions.part[p]);
+	return why			 ? why
 	       : pieces			 ? "beside a fast pole a step goes in pieces, a smaller step in one"
 	       : caches_regions(step->model) ? "matrices of regions are made when they are met"
 	       : step->is.two_words	 ? "the search is in two words"
@@ -83,14 +86,14 @@ const char *unbounded_text(const struct step *step)
 	return search				     ? search
 	       : series			     ? series
 	       : system->segments > 1	     ? "loads change their formula inside a step"
-	       : model->written->ranges > 0  ? "states are compared with their ranges"
+	       : model->written->ranges > 0 && model->written != model
+		       ? "the states as written are compared with their ranges"
 	       : model->delays		     ? "the step of a core is taken in parts"
 	       : peak_outputs(model) > 0     ? "peaks inside a step are searched"
 	       : step->modal		     ? "modes are stepped in loops of their own"
 	       : step->refresh		     ? "a refresh evaluates functions of loads in some steps"
 	       : calls			     ? calls
 	       : holds_longer(system)	     ? "inputs go through more than two samples"
-	       : model->params.tuning	     ? "params are tunable"
 					     : NULL;
 }
 
@@ -102,6 +105,8 @@ static struct parts parts_of(const struct step *step)
 	struct parts p = { .multiplications = program->multiplications - program->forcing_multiplications,
 			   .additions = program->additions - program->forcing_additions,
 			   .states = system->states, .inputs = system->inputs };
+	for (int i = 0; i < system->inputs; i++)
+		p.ramps += system->input[i].hold > 0;
 	for (int l = 0; l < system->loads; l++) {
 		p.forcings += oscillates(system->load[l].forcing);
 		p.growths += mpq_sgn(system->load[l].forcing->a) != 0;
@@ -181,6 +186,19 @@ static const struct bound bounds[] = {
 	  { { 4.2, 30.37, 262.9 }, { 4.75, 36.99, 68.86 } } }
 };
 
+/* Where params are tunable all of it so many times, of a step in loops; on top for a step; for the slope of a ramp, a
+ * quotient. To the longest of 32 models */
+static const double tuned[][2][4] = {
+	{ { 1.015, 1.13, 150, 100 }, { 1.02, 1.21, 100, 50 } },
+	{ { 1, 1.13, 0, 470 }, { 1, 1.21, 8, 5 } },
+	{ { 1, 1.13, 12, 0 }, { 1, 1.21, 8, 5 } }
+};
+
+/* A state that is compared with its range; one that is fetched for it */
+static const double ranged[][2][2] = {
+	{ { 150, 0 }, { 105, 0 } }, { { 105, 0 }, { 22, 0 } }, { { 20, 2 }, { 22, 0 } }
+};
+
 /* The same of searches, to the longest steps beside breakpoints, grazing, in chains of impacts of 12 models: with
  * friction and impacts as often as much as on a Cortex-M4 in float, in double, in float */
 static const double searches[][2][SEARCH] = {
@@ -237,13 +255,51 @@ static double sum_of(int count, const double *each, const double *times)
 	return ceil(sum);
 }
 
-static double worst_of_search(const struct step *step, int target, bool single)
+static double worst_of_search(const struct step *step, int target, bool single, double forced)
 {
 	double part[SEARCH];
 	search_of(step, single, part);
+	part[FORCED] = forced;
 	return has_events(step->model->switching)
 		       ? ceil(contacts_take[target][single] * sum_of(SEARCH, contacts, part))
 		       : sum_of(SEARCH, searches[target][single], part);
+}
+
+static double worst_of_plain(const struct step *step, int target, bool single)
+{
+	const struct parts p = parts_of(step);
+	const double more = fmax(p.multiplications - 30, 0);
+	const double plain[PLAIN] = { p.multiplications, p.additions, p.forcings, p.growths, p.states, p.flushed,
+				      p.inputs, 1, more };
+	const double loops[LOOPS] = { fmax(p.multiplications, p.additions), p.compared, 1 };
+	const double *each = bounds[target].plain[single];
+	return step->program->loops ? ceil(sum_of(LOOPS, bounds[target].loops[single], loops) + each[2] * p.forcings +
+					   each[3] * p.growths + each[6] * p.inputs)
+				    : sum_of(PLAIN, each, plain);
+}
+
+static double worst_of_linear(const struct step *step, int target, bool single)
+{
+	const double worst = worst_of_plain(step, target, single), *more = tuned[target][single];
+	return step->model->params.tuning
+		       ? ceil(more[step->program->loops] * worst + more[2] + more[3] * parts_of(step).ramps)
+		       : worst;
+}
+
+/* Of independent parts, of which each has its own events, all of them; loads are those of the whole. */
+static double worst_of_regions(const struct step *step, int target, bool single)
+{
+	const struct parts p = parts_of(step);
+	double sum = 0;
+	if (step->regions.parts == 0)
+		return worst_of_search(step, target, single, p.forcings + p.growths);
+	for (int i = 0; i < step->regions.parts; i++) {
+		const struct step *part = step->regions.part[i];
+		sum += part->model->switching->functions > 0
+			       ? worst_of_search(part, target, single, i == 0 ? p.forcings + p.growths : 0)
+			       : worst_of_plain(part, target, single);
+	}
+	return sum;
 }
 
 static double worst_of_series(const struct step *step, int target, bool single)
@@ -263,20 +319,14 @@ static double worst_of_series(const struct step *step, int target, bool single)
 
 double worst_of_step(const struct step *step, int target, bool single)
 {
-	if (step->taylor.expansion)
-		return worst_of_series(step, target, single);
-	if (step->model->switching)
-		return worst_of_search(step, target, single);
-	const struct parts p = parts_of(step);
-	const double more = fmax(p.multiplications - 30, 0);
-	const double plain[PLAIN] = { p.multiplications, p.additions, p.forcings, p.growths, p.states, p.flushed,
-				      p.inputs, 1, more };
-	const double loops[LOOPS] = { fmax(p.multiplications, p.additions), p.compared, 1 };
-	const double *each = bounds[target].plain[single];
-	if (!step->program->loops)
-		return sum_of(PLAIN, each, plain);
-	return ceil(sum_of(LOOPS, bounds[target].loops[single], loops) + each[2] * p.forcings + each[3] * p.growths +
-		    each[6] * p.inputs);
+	const struct model *model = step->model;
+	const double *each = ranged[target][single];
+	const double worst = step->taylor.expansion ? worst_of_series(step, target, single)
+			     : model->switching	    ? worst_of_regions(step, target, single)
+						    : worst_of_linear(step, target, single);
+	return model->written->ranges == 0
+		       ? worst
+		       : ceil(worst + each[0] * model->written->ranges + each[1] * step->branch->system.states);
 }
 
 /* On a Cortex-M0 at most 4900 instructions, on ...; that of all internal steps is far above the usual one */

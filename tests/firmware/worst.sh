@@ -14,100 +14,100 @@ firmware=$root/tests/firmware
 . "$root/tests/tap.sh"
 . "$firmware/boards.sh"
 if ! boards_installed; then
-    echo '1..0 # SKIP no arm-none-eabi-gcc, or no qemu-system-arm'
-    exit 0
+	echo '1..0 # SKIP no arm-none-eabi-gcc, or no qemu-system-arm'
+	exit 0
 fi
 work=$(mktemp -d "${TMPDIR:-/tmp}/worst.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 cd "$work" || exit 99
 
-# What the boards share, once for each; of the runtime what linear steps and those of regions call
-calls=$(ls "$root"/runtime/*.c | grep -Ev '_compensated|_d[.]|_df[.]|/(event|region|retune|peak)')
+# What the boards share, once for each; of the runtime what linear steps, those of regions and retunes call
+calls=$(ls "$root"/runtime/*.c | grep -Ev '_compensated|_d[.]|_df[.]|/(event|region|peak)')
 prepare() {
-    for b; do
-        board "$b"
-        mkdir "$b"
-        # shellcheck disable=SC2086
-        (cd "$b" && $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -fcallgraph-info=su -c \
-            $calls "$firmware/start.c" "$firmware/semihosting.c" \
-            "$firmware/digits.c" && $arm-ar rcD runtime.a ./*.o)
-    done
+	for b; do
+		board "$b"
+		mkdir "$b"
+		# shellcheck disable=SC2086
+		(cd "$b" && $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -fcallgraph-info=su -c \
+			$calls "$firmware/start.c" "$firmware/semihosting.c" \
+			"$firmware/digits.c" && $arm-ar rcD runtime.a ./*.o)
+	done
 }
 
 # A chain of masses, from one end to the other: chain N DAMPING
 chain() {
-    awk -v n="$1" -v c="$2" 'BEGIN {
-        print "model chain\ncoord q[" n "]\ninit q[1] = 1"
-        for (i = 1; i <= n; i++)
-            print "q[" i "]\47\47 + " c "*q[" i "]\47 + 2*q[" i "]" (i > 1 ? " - q[" i - 1 "]" : "") \
-                (i < n ? " - q[" i + 1 "]" : "") " = 0"
-        print "step 0.05" }'
+	awk -v n="$1" -v c="$2" 'BEGIN {
+		print "model chain\ncoord q[" n "]\ninit q[1] = 1"
+		for (i = 1; i <= n; i++)
+			print "q[" i "]\47\47 + " c "*q[" i "]\47 + 2*q[" i "]" (i > 1 ? " - q[" i - 1 "]" : "") \
+				(i < n ? " - q[" i + 1 "]" : "") " = 0"
+		print "step 0.05" }'
 }
 
 # search BOARD REAL SPEC [OPTION ...]: usual, largest, bound, stack. The clock of -icount shift=6 has 64 ns an
 # instruction, that of SysTick 40 ns a tick, of the M0's board 62.5; it counts to 2^24. Where there are events, starts
 # are sought beside breakpoints.
 search() {
-    b=$1
-    real=$2
-    spec=$3
-    shift 3
-    board "$b"
-    target=cortex-$(echo "${b%f}")
-    option=-DREAL_DOUBLE
-    [ "$real" = double ] || option=-DREAL_FLOAT
-    special=$("$plgen" --explain "$@" "$spec" 2>/dev/null |
-        awk '/breakpoints/ { sub(/.*breakpoints /, ""); gsub(/[^-0-9.e,]/, ""); printf "%s,", $0 }')
-    # what serves as long as a tolerance lets it be is slow from states that are found by steps, too
-    [ -n "$special" ] || ! grep -q tolerance "$spec" || special=0,
-    # shellcheck disable=SC2086
-    "$plgen" --real "$real" --prefix counted "$@" -o model.c "$spec" 2>log &&
-        "$plgen" --real "$real" --prefix counted "$@" --explain=json "$spec" >told 2>>log &&
-        $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -include model.h \
-            ${special:+-DSPECIAL=$special-1} \
-            -fcallgraph-info=su -c "$firmware/worst.c" model.c >>log 2>&1 &&
-        link image.elf model.o worst.o "$b/runtime.a" -lm >>log 2>&1 &&
-        emulate 300 image.elf -icount shift=6,align=off,sleep=off >out 2>>log
-    stack=$(awk -f "$firmware/stack.awk" model.ci "$b"/*.ci 2>/dev/null | awk '$1 == "counted_step" { print $3 }')
-    tail -n 1 out | cat - told | awk -v target="\"$target\":" -v stack="${stack:-0}" -v m0="$b" '
-        NR == 1 { scale = m0 == "m0" ? 1.024 : 1.6; usual = $1 / scale; largest = $2 / scale; header = $3 }
-        /"worst"/ { gsub(/[{},]/, " "); for (i = 1; i < NF; i++) if ($i == target) bound = $(i + 1) }
-        END { printf "%.0f %.0f %d %d %d\n", usual, largest, bound, header, stack }'
+	b=$1
+	real=$2
+	spec=$3
+	shift 3
+	board "$b"
+	target=cortex-$(echo "${b%f}")
+	option=-DREAL_DOUBLE
+	[ "$real" = double ] || option=-DREAL_FLOAT
+	special=$("$plgen" --explain "$@" "$spec" 2>/dev/null |
+		awk '/breakpoints/ { sub(/.*breakpoints /, ""); gsub(/[^-0-9.e,]/, ""); printf "%s,", $0 }')
+	# what serves as long as a tolerance lets it be is slow from states that are found by steps, too
+	[ -n "$special" ] || ! grep -q tolerance "$spec" || special=0,
+	# shellcheck disable=SC2086
+	"$plgen" --real "$real" --prefix counted "$@" -o model.c "$spec" 2>log &&
+		"$plgen" --real "$real" --prefix counted "$@" --explain=json "$spec" >told 2>>log &&
+		$arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -include model.h \
+			${special:+-DSPECIAL=$special-1} \
+			-fcallgraph-info=su -c "$firmware/worst.c" model.c >>log 2>&1 &&
+		link image.elf model.o worst.o "$b/runtime.a" -lm >>log 2>&1 &&
+		emulate 300 image.elf -icount shift=6,align=off,sleep=off >out 2>>log
+	stack=$(awk -f "$firmware/stack.awk" model.ci "$b"/*.ci 2>/dev/null | awk '$1 == "counted_step" { print $3 }')
+	tail -n 1 out | cat - told | awk -v target="\"$target\":" -v stack="${stack:-0}" -v m0="$b" '
+		NR == 1 { scale = m0 == "m0" ? 1.024 : 1.6; usual = $1 / scale; largest = $2 / scale; header = $3 }
+		/"worst"/ { gsub(/[{},]/, " "); for (i = 1; i < NF; i++) if ($i == target) bound = $(i + 1) }
+		END { printf "%.0f %.0f %d %d %d\n", usual, largest, bound, header, stack }'
 }
 
 # found NAME BOARD REAL SPEC [OPTION ...]
 found() {
-    name=$1
-    shift
-    set -- "$@"
-    # shellcheck disable=SC2046
-    search "$@" >line
-    read -r usual largest bound header _ <line
-    [ "$largest" -le "$bound" ] && [ $((largest * 10)) -ge $((bound * ${least:-7})) ] && [ "$bound" = "$header" ]
-    result $? "$name, $1, $2: $usual usual, $largest at most, bound $bound, in the header $header"
+	name=$1
+	shift
+	set -- "$@"
+	# shellcheck disable=SC2046
+	search "$@" >line
+	read -r usual largest bound header _ <line
+	[ "$largest" -le "$bound" ] && [ $((largest * 10)) -ge $((bound * ${least:-7})) ] && [ "$bound" = "$header" ]
+	result $? "$name, $1, $2: $usual usual, $largest at most, bound $bound, in the header $header"
 }
 
 if [ -n "$table" ]; then
-    prepare m0 m4f m7
-    echo '|model|type|M0: usual|largest|bound|stack|M4F: usual|largest|bound|stack|M7: usual|largest|bound|stack|'
-    echo '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|'
-    events="bouncing_ball brake gear1 gear2 impact_oscillator stick_slip stop"
-    for model in axle building drivetrain frame linear2dof quarter_car rotor scs sdcs sdcsf street tuned_floor \
-        $events; do
-        cp "$root/models/$model.spec" table.spec
-        case " $events " in *" $model "*) echo 'events at most 2 a step' >>table.spec; model=$model:2 ;; esac
-        for real in double float; do
-            row="|$model|$real|"
-            for b in m0 m4f m7; do
-                search $b $real table.spec >line
-                read -r usual largest bound _ stack <line
-                row="$row$usual|$largest|$bound|$stack|"
-            done
-            echo "$row"
-        done
-    done
-    exit 0
+	prepare m0 m4f m7
+	echo '|model|type|M0: usual|largest|bound|stack|M4F: usual|largest|bound|stack|M7: usual|largest|bound|stack|'
+	echo '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|'
+	events="bouncing_ball brake gear1 gear2 impact_oscillator stick_slip stop"
+	for model in axle building drivetrain frame linear2dof quarter_car rotor scs sdcs sdcsf street tuned_floor \
+		$events; do
+		cp "$root/models/$model.spec" table.spec
+		case " $events " in *" $model "*) echo 'events at most 2 a step' >>table.spec; model=$model:2 ;; esac
+		for real in double float; do
+			row="|$model|$real|"
+			for b in m0 m4f m7; do
+				search $b $real table.spec >line
+				read -r usual largest bound _ stack <line
+				row="$row$usual|$largest|$bound|$stack|"
+			done
+			echo "$row"
+		done
+	done
+	exit 0
 fi
 prepare m0 m4f m7
 chain 2 0.02 >two.spec
@@ -136,9 +136,12 @@ scheme taylor 9
 END
 sed 's/taylor 9/taylor 12 over 3/' cubic.spec >over.spec
 sed "s/x^2.z'/z'/; s/0.4.(x - z)^3/0.4*sin(x - z)/" cubic.spec >swing.spec
+sed 's/q\[1\] = 1$/&\nrange q[1] in [-1, 1], q[2]\x27 in [-2, 3]/' six.spec >ranged.spec
+sed -e 's/^coord/param k = 40, c = 0.3\ntunable k, c\n&/; s/ 40\*/ k*/; s/0\.3\*z/c*z/' loads.spec >tuned.spec
+sed 's/^coord/param k = 2\ntunable k\n&/; s/ 2\*q/ k*q/' fourteen.spec >tuned_chain.spec
 while read -r b real spec options; do
-    # shellcheck disable=SC2086
-    found "$spec $options" "$b" "$real" "$spec.spec" $options
+	# shellcheck disable=SC2086
+	found "$spec $options" "$b" "$real" "$spec.spec" $options
 done <<'END'
 m0 double two
 m0 float loads
@@ -157,6 +160,12 @@ m4f double over
 m7 double over
 m4f double swing --math own
 m7 double swing --math own
+m4f float ranged
+m7 double ranged
+m0 double tuned
+m4f double tuned
+m7 float tuned
+m4f float tuned_chain
 END
 least=6
 sed 's/taylor 9/taylor/; $a tolerance 1e-6\nsubsteps 5' cubic.spec >within.spec
@@ -172,7 +181,7 @@ least=5
 sed "s/0.2.x'/0.2*x'*abs(x')/; s/taylor 9/taylor 7/; \$a events at most 2 a step" cubic.spec >drag.spec
 sed 's/2.z -/2*z + 9*max(z - 0.4, 0) -/; s/taylor 9/taylor 7/; $a events at most 1 a step' cubic.spec >touch.spec
 while read -r b real spec; do
-    found "$spec" "$b" "$real" "$spec.spec"
+	found "$spec" "$b" "$real" "$spec.spec"
 done <<'END'
 m4f float drag
 m4f float touch
@@ -190,6 +199,8 @@ events at most 2 a step
 END
 sed "s/20.max(x - z - 0.2, 0)/friction(x', 0.4)/" gap.spec >rub.spec
 sed 's/ + 20.max(x - z - 0.2, 0)//; $a stop between x, ground at 0.3 restitution 0.6' gap.spec >bounce.spec
+# independent parts
+sed "s/ - 3\*z / /; s/ - 3\*x = / + 30*max(z - 0.1, 0) = /; s/x - z - 0.2/x - 0.2/" gap.spec >parts.spec
 # which take most of what their bound adds up: looks; rows, with friction and a bounce on one mass
 cat >looks.spec <<'END'
 model looks
@@ -210,12 +221,14 @@ step 0.1
 events at most 1 a step
 END
 while read -r b real spec; do
-    found "$spec" "$b" "$real" "$spec.spec"
+	found "$spec" "$b" "$real" "$spec.spec"
 done <<'END'
 m4f float looks
 m4f float rows
 m4f float gap
 m4f double gap
+m4f float parts
+m7 double parts
 m7 double rub
 m4f float rub
 m0 float bounce
