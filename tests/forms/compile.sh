@@ -21,62 +21,62 @@ languages -O1 -fsyntax-only >compilers
 
 # compiles FILE.c NAME [OPTIONS]
 compiles() {
-    # shellcheck disable=SC2086
-    by_each "$2" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o
+	# shellcheck disable=SC2086
+	by_each "$2" -I"$root/tests/forms" -I"${1%/*}" ${3-} -c "$1" -o out.o
 }
 
 without_comments() {
-    awk '{ line = $0
-           for (;;) {
-               if (inside) { if (!(i = index(line, "*/"))) next; line = substr(line, i + 2); inside = 0 }
-               if (!(i = index(line, "/*"))) break
-               printf "%s", substr(line, 1, i - 1); line = substr(line, i + 2); inside = 1
-           }
-           print line }' "$1"
+	awk '{ line = $0
+		   for (;;) {
+			   if (inside) { if (!(i = index(line, "*/"))) next; line = substr(line, i + 2); inside = 0 }
+			   if (!(i = index(line, "/*"))) break
+			   printf "%s", substr(line, 1, i - 1); line = substr(line, i + 2); inside = 1
+		   }
+		   print line }' "$1"
 }
 
 # no_double FILE.c NAME: no word double, no literal or function of that type
 no_double() {
-    without_comments "$1" | sed 's/"[^"]*"//g' >text
-    {
-        grep -n -w double text
-        grep -n -E '(^|[^A-Za-z0-9_.])([0-9]+\.[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?([^0-9.ef]|$)' text
-        grep -n -E '(^|[^A-Za-z0-9_.])[0-9]+e[-+]?[0-9]+([^0-9f]|$)' text
-        functions='sin|cos|tan|exp|log|sqrt|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow|fmin|fmax|copysign'
-        grep -n -E "(^|[^A-Za-z0-9_])($functions) *\\(" text
-    } >log
-    [ ! -s log ]
-    result $? "$2: no double in the text"
+	without_comments "$1" | sed 's/"[^"]*"//g' >text
+	{
+		grep -n -w double text
+		grep -n -E '(^|[^A-Za-z0-9_.])([0-9]+\.[0-9]*|\.[0-9]+)(e[-+]?[0-9]+)?([^0-9.ef]|$)' text
+		grep -n -E '(^|[^A-Za-z0-9_.])[0-9]+e[-+]?[0-9]+([^0-9f]|$)' text
+		functions='sin|cos|tan|exp|log|sqrt|fabs|sinh|cosh|tanh|asin|acos|atan|atan2|pow|fmin|fmax|copysign'
+		grep -n -E "(^|[^A-Za-z0-9_])($functions) *\\(" text
+	} >log
+	[ ! -s log ]
+	result $? "$2: no double in the text"
 }
 
 # no_double_instruction FILE.c NAME [OPTIONS]
 no_double_instruction() {
-    for compiler in "${GCCS:-gcc}" "${CLANGS:-clang}"; do
-        compiler=${compiler% *}
-        merging || [ "$compiler" = "${GCCS:-gcc}" ] || continue
-        if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 ||
-            [ "$(uname -m)" != x86_64 ]; then
-            skip "$2, $compiler" 'no such compiler, no objdump, or another processor'
-            continue
-        fi
-        long && level=-O2 || level=-O0          # without an optimiser no conversion goes unseen
-        if [ "${1%/*}" = "$root/runtime" ] && [ "$compiler" = "${GCCS:-gcc}" ] && [ -n "${PLRT-}" ]; then
-            ar p "$PLRT" "runtime_${1##*/}.o" >out.o 2>log  # as the build folder has it
-        else
-            # shellcheck disable=SC2086
-            "$compiler" -std=c99 $level $warnings -I"$root/runtime" -I"$root/tests/forms" -I"${1%/*}" ${3-} \
-                -c "$1" -o out.o >log 2>&1
-        fi
-        status=$?
-        # an address before or behind it may read fadd
-        [ $status -eq 0 ] && objdump -d out.o | sed 's/#.*//' | cut -f 3- >code
-        sse='(add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*'
-        x87='f(ld|st|add|sub|mul|div|ild)[a-z]*'
-        grep -E "^v?($sse|$x87)([[:space:]]|$)" code >>log
-        grep -q -E '^v?([a-z]*[sp]s|movd)[[:space:]]' code || echo 'nothing of float either' >>log
-        [ $status -eq 0 ] && [ ! -s log ]
-        result $? "$2: no instruction of double, $compiler"
-    done
+	for compiler in "${GCCS:-gcc}" "${CLANGS:-clang}"; do
+		compiler=${compiler% *}
+		merging || [ "$compiler" = "${GCCS:-gcc}" ] || continue
+		if ! command -v "$compiler" >/dev/null 2>&1 || ! command -v objdump >/dev/null 2>&1 ||
+			[ "$(uname -m)" != x86_64 ]; then
+			skip "$2, $compiler" 'no such compiler, no objdump, or another processor'
+			continue
+		fi
+		long && level=-O2 || level=-O0          # without an optimiser no conversion goes unseen
+		if [ "${1%/*}" = "$root/runtime" ] && [ "$compiler" = "${GCCS:-gcc}" ] && [ -n "${PLRT-}" ]; then
+			ar p "$PLRT" "runtime_${1##*/}.o" >out.o 2>log  # as the build folder has it
+		else
+			# shellcheck disable=SC2086
+			"$compiler" -std=c99 $level $warnings -I"$root/runtime" -I"$root/tests/forms" \
+				-I"${1%/*}" ${3-} -c "$1" -o out.o >log 2>&1
+		fi
+		status=$?
+		# an address before or behind it may read fadd
+		[ $status -eq 0 ] && objdump -d out.o | sed 's/#.*//' | cut -f 3- >code
+		sse='(add|sub|mul|div|sqrt|min|max|u?comi|round|cmp[a-z]*)[sp]d|cvt[a-z0-9]*[sp]d[a-z0-9]*'
+		x87='f(ld|st|add|sub|mul|div|ild)[a-z]*'
+		grep -E "^v?($sse|$x87)([[:space:]]|$)" code >>log
+		grep -q -E '^v?([a-z]*[sp]s|movd)[[:space:]]' code || echo 'nothing of float either' >>log
+		[ $status -eq 0 ] && [ ! -s log ]
+		result $? "$2: no instruction of double, $compiler"
+	done
 }
 
 # ---- linear models in every form ----
@@ -90,49 +90,50 @@ no_double_instruction "$float" 'linear models in float' -DREAL_FLOAT
 # ---- what is complete in itself ----
 
 for m in $remainder $switching; do
-    "$plgen" --real float --rhs "$root/models/$m.spec" >"$m.c" 2>log
-    result $? "$m: plgen takes it for float"
-    compiles "$work/$m.c" "$m in float"
-    no_double "$m.c" "$m in float"
-    no_double_instruction "$work/$m.c" "$m in float"
-    # shellcheck disable=SC2086
-    "$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 &&
-        "$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
-        cmp "apart_$m.h" header.h >>log 2>&1 && grep -q "^#include \"apart_$m.h\"\$" "apart_$m.c" &&
-        ${CC:-cc} -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
-    result $? "$m in float: -o writes C and header, --header the same header"
+	"$plgen" --real float --rhs "$root/models/$m.spec" >"$m.c" 2>log
+	result $? "$m: plgen takes it for float"
+	compiles "$work/$m.c" "$m in float"
+	no_double "$m.c" "$m in float"
+	no_double_instruction "$work/$m.c" "$m in float"
+	# shellcheck disable=SC2086
+	"$plgen" --real float --rhs -o "apart_$m.c" "$root/models/$m.spec" >log 2>&1 &&
+		"$plgen" --real float --rhs --header "$root/models/$m.spec" >"header.h" 2>>log &&
+		cmp "apart_$m.h" header.h >>log 2>&1 && grep -q "^#include \"apart_$m.h\"\$" "apart_$m.c" &&
+		${CC:-cc} -std=c99 $warnings -I"$root/runtime" -I. -fsyntax-only "apart_$m.c" >>log 2>&1
+	result $? "$m in float: -o writes C and header, --header the same header"
 done
 for m in scs quarter_car; do
-    for accuracy in '' '--accuracy compensated'; do
-        # shellcheck disable=SC2086
-        "$plgen" --real float $accuracy --rhs "$root/models/$m.spec" >"$m.c" 2>log
-        compiles "$work/$m.c" "$m in float, standard output ${accuracy#* }" -ffreestanding
-        no_double "$m.c" "$m in float, standard output ${accuracy#* }"
-    done
+	for accuracy in '' '--accuracy compensated'; do
+		# shellcheck disable=SC2086
+		"$plgen" --real float $accuracy --rhs "$root/models/$m.spec" >"$m.c" 2>log
+		compiles "$work/$m.c" "$m in float, standard output ${accuracy#* }" -ffreestanding
+		no_double "$m.c" "$m in float, standard output ${accuracy#* }"
+	done
 done
 
 # ---- the runtime for float ----
 
 for f in "$root"/runtime/*f.c; do
-    case ${f##*/} in
-        phasesf.c | seriesf.c | powerf.c | untilf.c | envelopef.c | applyf.c | crossingsf.c | rootf.c | densef.c)
-            no_double_instruction "$f" "runtime ${f##*/}" ;;
-    esac
+	case ${f##*/} in
+		phasesf.c | seriesf.c | powerf.c | untilf.c | envelopef.c | applyf.c | crossingsf.c | \
+		rootf.c | densef.c)
+			no_double_instruction "$f" "runtime ${f##*/}" ;;
+	esac
 done
 
 # ---- --explain=json ----
 
 # explained SPEC FORM ACCURACY REAL OPTION ...
 explained() {
-    spec=$1
-    wanted="\"form\": \"$2\",\"accuracy\": \"$3\",\"real\": \"$4\","
-    shift 4
-    "$plgen" --explain=json "$@" "$root/models/$spec.spec" 2>log |
-        sed -n 's/^  \("\(form\|accuracy\|real\)": .*\)/\1/p' | tr -d '\n' >found
-    [ "$(cat found)" = "$wanted" ]
-    status=$?
-    echo "found $(cat found), expected $wanted" >log
-    result $status "--explain=json of $spec $*: $wanted"
+	spec=$1
+	wanted="\"form\": \"$2\",\"accuracy\": \"$3\",\"real\": \"$4\","
+	shift 4
+	"$plgen" --explain=json "$@" "$root/models/$spec.spec" 2>log |
+		sed -n 's/^  \("\(form\|accuracy\|real\)": .*\)/\1/p' | tr -d '\n' >found
+	[ "$(cat found)" = "$wanted" ]
+	status=$?
+	echo "found $(cat found), expected $wanted" >log
+	result $status "--explain=json of $spec $*: $wanted"
 }
 explained scs kick-drift-kick plain double
 explained scs kick-drift-kick plain float --real float

@@ -10,29 +10,29 @@ awk -f "$root/tests/cases.awk" "$root/tests/switching/specs.cases" >names || exi
 
 size=$("$plgen" five.spec | wc -c)
 [ "$size" -gt 10000 ] && [ "$size" -le 102400 ] ||
-    { echo "$size bytes, 102400 at most expected" >log; false; }
+	{ echo "$size bytes, 102400 at most expected" >log; false; }
 result $? 'five stops: less than 100 KB of C'
 
 # The number of a region is the sum of its parts' shares, each in 0 .. 242 once.
 "$plgen" --explain=json five.spec >json 2>log
 tr -d ' \n' <json | sed 's/.*"parts":\[//; s/"cost".*//; s/"coordinates"/\n&/g' |
-    sed -n 's/.*"regions":\[\([^]]*\).*/\1/p' | sed 's/{"number":\([0-9]*\),"matrix":[0-9]*}/\1/g; s/,/ /g' >shares
+	sed -n 's/.*"regions":\[\([^]]*\).*/\1/p' | sed 's/{"number":\([0-9]*\),"matrix":[0-9]*}/\1/g; s/,/ /g' >shares
 awk '{ split("", next_sums); m = 0
-       for (i = 1; i <= NF; i++) for (s = 0; s < (NR == 1 ? 1 : n); s++) 
-                next_sums[m++] = (NR == 1 ? 0 : sum[s]) + $i
-       for (s = 0; s < m; s++) sum[s] = next_sums[s]
-       n = m }
-     END { for (s = 0; s < n; s++) { if (seen[sum[s]]++) bad++; if (sum[s] < 0 || sum[s] > 242) bad++ }
-           if (n != 243 || bad) { print n " numbers of 243, " bad + 0 " of them wrong"; exit 1 } }' shares >log
+	   for (i = 1; i <= NF; i++) for (s = 0; s < (NR == 1 ? 1 : n); s++) 
+				next_sums[m++] = (NR == 1 ? 0 : sum[s]) + $i
+	   for (s = 0; s < m; s++) sum[s] = next_sums[s]
+	   n = m }
+	 END { for (s = 0; s < n; s++) { if (seen[sum[s]]++) bad++; if (sum[s] < 0 || sum[s] > 242) bad++ }
+		   if (n != 243 || bad) { print n " numbers of 243, " bad + 0 " of them wrong"; exit 1 } }' shares >log
 result $? 'five stops: 243 numbers of regions, each once'
 
 # coords PARTS WHAT: of the spec on standard input, the coordinates of each part
 coords() {
-    "$plgen" --explain=json - >json 2>log
-    sed -n 's/.*"coordinates": \[\([^]]*\)\].*/\1;/p' json | tr -d '\n" ' >log
-    echo >>log
-    [ "$(cat log)" = "$1" ]
-    result $? "$2"
+	"$plgen" --explain=json - >json 2>log
+	sed -n 's/.*"coordinates": \[\([^]]*\)\].*/\1;/p' json | tr -d '\n" ' >log
+	echo >>log
+	[ "$(cat log)" = "$1" ]
+	result $? "$2"
 }
 stops="model m
 coord x, y, z
@@ -67,7 +67,7 @@ EOF
 [ "$(cat log)" = 0 ]
 result $? 'a drive that is free as a whole: no word of parts'
 printf '%s\n' "$stops" "x'' + 5*deadzone(x - y, -1, 1) = f" "y'' - 5*deadzone(x - y, -1, 1) = 0" \
-    "z'' + z + max(z, 0) = f" | "$plgen" --explain - 2>&1 | grep 'independent parts' >log
+	"z'' + z + max(z, 0) = f" | "$plgen" --explain - 2>&1 | grep 'independent parts' >log
 [ "$(cat log)" = 'Rigid-body modes: 2 independent parts have their regions together.' ]
 result $? 'a body that is free: it is said that regions are together'
 
@@ -110,7 +110,7 @@ int main(void)
 		}
 	}
 	printf("# float, 3000 steps: off by %g at most, %d crossings\n", (double)most,
-	       (int)parts_crossed(&all));
+		   (int)parts_crossed(&all));
 	if (!(most <= 1e-4f))
 		printf("1e-4 at most expected\n");
 	return !(most <= 1e-4f && parts_crossed(&all) == part_x_crossed(&x) + part_y_crossed(&y) &&
@@ -118,14 +118,14 @@ int main(void)
 }
 EOF
 "$plgen" --real float -o parts.c parts.spec >log 2>&1 &&
-    for one in x y; do
-        [ $one = x ] && others=yz || others=xz
-        sed "/of [$others]\$/d" parts.spec |
-            "$plgen" --real float --prefix part_$one -o part_$one.c - || exit 99
-    done >>log 2>&1 &&
-    gcc -std=c99 -O1 -Wall -Wextra -Wconversion -Wdouble-promotion -Werror -I"$root/runtime" -I. float.c parts.c \
-        part_x.c part_y.c "$archive" -o float >>log 2>&1 &&
-    ./float >>log 2>&1
+	for one in x y; do
+		[ $one = x ] && others=yz || others=xz
+		sed "/of [$others]\$/d" parts.spec |
+			"$plgen" --real float --prefix part_$one -o part_$one.c - || exit 99
+	done >>log 2>&1 &&
+	gcc -std=c99 -O1 -Wall -Wextra -Wconversion -Wdouble-promotion -Werror -I"$root/runtime" -I. float.c parts.c \
+		part_x.c part_y.c "$archive" -o float >>log 2>&1 &&
+	./float >>log 2>&1
 result $? 'parts in float: each as one alone'
 grep '^# ' log
 
@@ -156,7 +156,7 @@ int main(void)
 		both += of[0] == 2 && of[1] > 0;
 		for (int i = 0; i < count && count == of[0] + of[1]; i++) {
 			const int part = list[i].expression, at = seen[part]++;
-			if (at >= of[part] || list[i].time < alone[part][at].time || list[i].time > alone[part][at].time)
+			if (at >= of[part] || list[i].time != alone[part][at].time)
 				seen[part] = 9;
 		}
 		if (seen[0] != of[0] || seen[1] != of[1]) {
@@ -178,10 +178,10 @@ step 0.2
 events at most 2 a step
 EOF
 {
-    "$plgen" -o few.c few.spec &&
-        sed '/^y/d; s/, y$//; s/, y = 0.3//' few.spec | "$plgen" --prefix few_x -o few_x.c - &&
-        sed '/^x/d; s/coord x, y/coord y/; s/x = 1, //' few.spec | "$plgen" --prefix few_y -o few_y.c - &&
-        $run_cc -I"$root/runtime" -I. few_main.c few.c few_x.c few_y.c "$archive" -o few && ./few
+	"$plgen" -o few.c few.spec &&
+		sed '/^y/d; s/, y$//; s/, y = 0.3//' few.spec | "$plgen" --prefix few_x -o few_x.c - &&
+		sed '/^x/d; s/coord x, y/coord y/; s/x = 1, //' few.spec | "$plgen" --prefix few_y -o few_y.c - &&
+		$run_cc -I"$root/runtime" -I. few_main.c few.c few_x.c few_y.c "$archive" -o few && ./few
 } >log 2>&1
 result $? 'more events than a part may have: its own list alone'
 grep '^# ' log
