@@ -28,8 +28,6 @@
 #include <stdint.h>
 #include <stdio.h>
 
-#include "plrt.h"           /* the cost of its routines */
-
 #define PLGEN_VERSION "0.1.0"
 
 /* Limits; each names itself in the message that it causes. */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Eigenvalues, and equations solved, in double precision: to begin with, to choose by, or to report. */
 #include "math/math.h"
+#include "plrt.h"
 
 #include <complex.h>
 #include <gsl/gsl_eigen.h>

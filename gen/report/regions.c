@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Formulas that the state chooses: regions, intervals, what they cost; for a person, and as JSON. */
 #include "model/contacts/friction.h"
+#include "plrt.h"
 #include "report/report.h"
 #include "model/regions/regions.h"
 #include "step/series/switching.h"

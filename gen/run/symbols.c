@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What the C of a model calls and does not define, for a compiler that links it here: the runtime, <math.h>, and what
  * the compiler itself calls. */
+#include "plrt.h"
 #include "run/run.h"
 
 #include <math.h>

@@ -3,6 +3,7 @@
 #ifndef PLGEN_STEP_COST_H
 #define PLGEN_STEP_COST_H
 
+#include "plrt.h"           /* the cost of its routines */
 #include "step.h"
 
 /* ---- cost.c: what a step costs ---- */

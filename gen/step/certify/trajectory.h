@@ -5,6 +5,7 @@
 
 #include "math/math.h"
 #include "model/linear/linear.h"
+#include "plrt.h"
 
 struct event_state;
 struct deviation;

@@ -3,6 +3,7 @@
  * numbers, a large one by the columns of its matrix, which compilers vectorise. What is zero between blocks leaves no
  * trace. */
 #include "inner.h"
+#include "plrt.h"
 #include "step/tunable/tuned.h"
 
 enum {

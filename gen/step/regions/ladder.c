@@ -4,6 +4,7 @@
  * by entry, in the rows of what hardly changes in it: a number near 1 would repeat its rounding in every piece. */
 #include "inner.h"
 #include "model/regions/regions.h"
+#include "plrt.h"
 
 #include <math.h>
 

@@ -2,6 +2,7 @@
 /* A linear step with tunable params. Of a large one what params touch is the instance's, and the target computes
  * e^{A h} of these independent blocks alone; the others keep their tables. Any other is one block. */
 #include "model/tunable/elsewhere.h"
+#include "plrt.h"
 #include "step/exponential/recipe.h"
 #include "tuned.h"
 
