@@ -115,8 +115,8 @@ bool is_decided(const struct collector *c, int count, struct form *const *x)
 
 bool is_decided_call(const struct collector *c, const struct node *node, struct form *const *x)
 {
-	if (is_decided(c, node->children, x))
-		return true;
+	if (is_decided(c, node->children, x) || (node->function == FN_TABLE && node->children == 5))
+		return true;            /* two points of a table are a straight line */
 	if (node->function != FN_MIN && node->function != FN_MAX && node->function != FN_CLIP &&
 	    node->function != FN_DEADZONE)
 		return false;
