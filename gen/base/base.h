@@ -281,6 +281,7 @@ void   target_double(void);
 const char *target_name(void);
 /* nearest of the target's numbers; +-HUGE_VAL beyond the range */
 double round_rational(mpq_srcptr q);
+void   round_roughly(mpq_ptr to, mpq_srcptr q);             /* to a double; beyond their range to is q */
 double rounding_rest(mpq_srcptr q);                         /* what that leaves out of q, rounded */
 double nearest_double(mpq_srcptr q);                        /* whatever the target */
 bool   beyond_range(mpq_srcptr q);

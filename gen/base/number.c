@@ -69,6 +69,15 @@ static double round_bound(mpfr_srcptr bound)
 	return rounded_value(x, inexact);
 }
 
+void round_roughly(mpq_ptr to, mpq_srcptr q)
+{
+	const double rough = mpq_get_d(q);
+	if (isfinite(rough))
+		mpq_set_d(to, rough);
+	else
+		mpq_set(to, q);
+}
+
 double rounding_rest(mpq_srcptr q)
 {
 	RATIONAL rest = ZERO;

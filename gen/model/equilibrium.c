@@ -153,7 +153,7 @@ static double largest_of_vector(int n, const double *x)
 {
 	double largest = 0;
 	for (int i = 0; i < n; i++)
-		largest = fmax(largest, fabs(x[i]));
+		largest = isfinite(largest + x[i]) ? fmax(largest, fabs(x[i])) : INFINITY;
 	return largest;
 }
 
@@ -283,7 +283,7 @@ void find_equilibrium(struct linearising *l)
 			mpq_set(from[i], unknown_of(l, i));
 			scale = fmax(scale, fabs(mpq_get_d(unknown_of(l, i))));
 		}
-		if (step <= 1e-60 * scale || (step == 0 && scale == 0))
+		if (step <= 1e-60 * scale || (step == 0 && scale == 0) || !isfinite(step))
 			break;
 		double part = 1;
 		for (move(l, from, direction, part); distance(l, K, solved, next) > before && part > 1e-6; part /= 2)

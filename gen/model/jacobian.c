@@ -154,7 +154,7 @@ static void evaluate_rounded(struct jacobian *j, struct point *at, int count, co
 {
 	for (int i = 0; i < count; i++) {
 		constant_of(&j->b->collector, form_at(at, form[i]), value[i]);
-		mpq_set_d(value[i], mpq_get_d(value[i]));
+		round_roughly(value[i], value[i]);
 	}
 }
 
@@ -176,7 +176,7 @@ static mpq_t *fix_highest(struct jacobian *j, struct point *at, const struct mov
 		fixing[i] = (struct fixing){ .symbol = j->b->model->frame.coord[highest->index],
 					     .coord = highest->index, .order = highest->order };
 		mpq_init(fixing[i].value);
-		mpq_set_d(fixing[i].value, mpq_get_d(x[i]));
+		round_roughly(fixing[i].value, x[i]);
 	}
 	return inverse;
 }
@@ -194,11 +194,12 @@ static void solve_rows(const struct jacobian *j, const struct moving_mass *mass,
 	const int n = mass->system.n, all = j->b->model->n;
 	RATIONALS *own = rationals((size_t)(n * all)), *solved = rationals((size_t)(n * all));
 	for (int i = 0; i < n * all; i++)
-		mpq_set_d(own[i], place_in_row(j, mass, i) < 0 ? 0 : mpq_get_d(rows[place_in_row(j, mass, i)]));
+		if (place_in_row(j, mass, i) >= 0)
+			round_roughly(own[i], rows[place_in_row(j, mass, i)]);
 	unreduced_product(n, n, all, inverse, own, solved);
 	for (int i = 0; i < n * all; i++)
 		if (place_in_row(j, mass, i) >= 0)
-			mpq_set_d(rows[place_in_row(j, mass, i)], mpq_get_d(solved[i]));
+			round_roughly(rows[place_in_row(j, mass, i)], solved[i]);
 }
 
 /* With F = M q'' - f as written and q'' as it is there, M^-1 of F's derivatives: those of q'' - M^-1 f as forms would

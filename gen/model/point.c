@@ -176,7 +176,7 @@ static void derive_masses(struct linearising *l)
 static void round_value(mpq_ptr value, bool roughly)
 {
 	if (roughly)
-		mpq_set_d(value, mpq_get_d(value));
+		round_roughly(value, value);
 	else
 		round_long(value);
 }

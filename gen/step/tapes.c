@@ -297,7 +297,7 @@ static int load_terms(struct tape *t, const struct step *step, const struct outp
 				continue;
 			tape_ref x = tape_of_column(t, system, column);
 			term[terms++] = differs ? entry(t, TABLE_DIRECT, place * columns + column, x)
-						: number_times(t, round_rational(factor[0]), x);
+						: number_times(t, row_factor(output, factor[0]), x);
 		}
 	return terms;
 }

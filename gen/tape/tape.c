@@ -2,6 +2,8 @@
 /* Nodes, each made once; what they cost and read. */
 #include "tape/tape.h"
 
+#include <math.h>
+
 struct tape {
 	int nodes, room, outs;      /* room for nodes, a power of two, and as many buckets */
 	struct tape_node *node;
@@ -103,6 +105,8 @@ tape_ref tape_number(struct tape *t, long value)
 tape_ref tape_double(struct tape *t, double value)
 {
 	RATIONAL exact = ZERO;
+	if (!isfinite(value))
+		error(working_at(), NULL, "a number of the equations is beyond the range of %s", target_name());
 	mpq_set_d(exact, value);
 	return tape_constant(t, exact);
 }
