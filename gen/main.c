@@ -148,13 +148,15 @@ static const char *place_on_motion(struct work *w, const struct model *model, co
 	why = why ? why : motion_to(w->spec->name_at, moving.step, steps, y);
 	if (w->options.request.single)
 		target_float();
-	if (why)
+	if (why) {
 		say_error(w->spec->name_at, "--at x=0.1 linearises at given values", "the motion to t = %s: %s", end,
 			  why);
+		return NULL;
+	}
 	for (int i = 0; i < states; i++)
 		place = format("%s,%s=%s", place, model->names.state[i], shortest(y[i]));
 	*by = format("scheme %s", scheme_name(moving.step->model->scheme));
-	return why ? NULL : place;
+	return place;
 }
 
 /* With its linear equations, where it has others and a place is asked for */

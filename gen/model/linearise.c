@@ -12,6 +12,7 @@
 #include "linearise.h"
 #include "reads.h"
 #include "state_mass.h"
+#include "model/contacts/friction.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
 
@@ -497,7 +498,7 @@ static void say_point(struct linearising *l)
 static void check_contacts(const struct building *b)
 {
 	const struct facts facts = facts_of_model(b->model);
-	if (facts.contacts)
+	if (facts.contacts || holds_friction(b))
 		error(b->spec->name_at, "plrun runs any model, also with a record that sweeps",
 		      "friction, impacts and jumps have no linear equations");
 }

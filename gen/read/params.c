@@ -4,7 +4,8 @@
  *     JSON = { "NAME": value, ... }, value = a number | "EXPR" | an object, whose names are those of the part NAME
  *     CSV  = [ name,value ] { NAME,EXPR }, a line each; lines that are blank or begin with # between them
  *
- * Neither names nor expressions need escapes, so a value is read where it stands, and messages show that place. */
+ * Nothing needs escapes but the quotes of a unit, \" in JSON, "" in CSV; of these the first character becomes a space,
+ * so a value is read where it stands, and messages show that place. */
 #include "read/read.h"
 
 #include <string.h>
@@ -12,9 +13,10 @@
 struct reader {
 	struct definitions *to;
 	const struct source *source;
-	const char *text;
+	char *text;                 /* that of the source, a copy */
 	size_t position;
 	int depth;
+	char escape;                /* before the quotes of a unit */
 };
 
 static struct place here(const struct reader *r)
@@ -45,11 +47,17 @@ static _Noreturn void expected(const struct reader *r, const char *what)
 }
 
 /* What is between quotes, the first of which is taken: its end */
-static size_t read_quoted(struct reader *r)
+static size_t read_quoted(struct reader *r, bool value)
 {
-	const size_t from = r->position, until = from + strcspn(r->text + from, "\"\\\n");
+	const size_t from = r->position;
+	size_t until = from + strcspn(r->text + from, "\"\\\n");
+	while (value && r->text[until] == r->escape && r->text[until + 1] == '"') {
+		r->text[until] = ' ';
+		until += 2 + strcspn(r->text + until + 2, "\"\\\n");
+	}
 	if (r->text[until] == '\\')
-		error((struct place){ r->source, until }, NULL, "names and expressions have no escapes");
+		error((struct place){ r->source, until }, "the quotes of a unit may be \\\"",
+		      "names and expressions have no escapes");
 	if (r->text[until] != '"')
 		error((struct place){ r->source, from - 1 }, NULL, "the string has no end in this line");
 	r->position = until + 1;
@@ -70,7 +78,7 @@ static void read_value(struct reader *r, const char *name, size_t at)
 		expected(r, "a number, an expression in quotes or an object");
 	if (!quoted)
 		r->position += strcspn(r->text + from, ",}] \t\r\n");
-	add(r, name, at, from, quoted ? read_quoted(r) : r->position);
+	add(r, name, at, from, quoted ? read_quoted(r, true) : r->position);
 }
 
 /* Behind its brace */
@@ -83,7 +91,7 @@ static void read_object(struct reader *r, const char *part)
 	do {
 		if (!take_character(r, '"'))
 			expected(r, "the name of a param in quotes");
-		const size_t at = r->position, until = read_quoted(r);
+		const size_t at = r->position, until = read_quoted(r, false);
 		const char *name = format("%s%.*s", part, (int)(until - at), r->text + at);
 		if (!take_character(r, ':'))
 			expected(r, "':'");
@@ -113,7 +121,7 @@ static size_t read_cell(struct reader *r, const char *end, size_t *from)
 	*from = r->position;
 	if (text[*from] == '"') {
 		*from = ++r->position;
-		const size_t until = read_quoted(r);
+		const size_t until = read_quoted(r, true);
 		r->position += strspn(text + r->position, " \t\r");
 		return until;
 	}
@@ -155,13 +163,18 @@ static void read_csv(void *context)
 
 bool definitions_read(const char *path, struct definitions *to)
 {
-	const struct source *source = source_read(path, (struct place){ 0 });
-	const size_t length = strlen(path);
-	if (!source)
+	const struct source *read = source_read(path, (struct place){ 0 });
+	if (!read)
 		return false;
-	struct reader r = { .to = to, .source = source, .text = source->text };
-	r.position = strncmp(r.text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-	return statement_guard(strcmp(path + length - 4, ".csv") == 0 ? read_csv : read_json, &r);
+	struct source *source = NEW(struct source);
+	char *text = ARRAY(char, read->length + 1);
+	memcpy(text, read->text, read->length);
+	*source = *read;
+	source->text = text;
+	const bool csv = strcmp(path + strlen(path) - 4, ".csv") == 0;
+	struct reader r = { .to = to, .source = source, .text = text, .escape = csv ? '"' : '\\' };
+	r.position = strncmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+	return statement_guard(csv ? read_csv : read_json, &r);
 }
 
 void definitions_add(const char *text, struct definitions *to)
