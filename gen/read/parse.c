@@ -293,6 +293,7 @@ struct spec *parse_whole(const struct source *source, const struct part_reader *
 	spec->last = &spec->first;
 	spec->bucket = ARRAY(struct symbol *, BUCKETS);
 	spec->end = place_end(source);
+	spec->name_at = (struct place){ source, 0 };    /* until `model` is read */
 	parse_statements(spec, spec, NULL, source);
 	return spec;
 }

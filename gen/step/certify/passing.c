@@ -350,7 +350,7 @@ struct reference reference_of_trajectory(const struct step *step)
 	if (best.crossings == 0)
 		error((struct place){ source_argument("--selftest"), 0 }, NULL,
 		      "--selftest finds no start from which a breakpoint is passed in %lu steps, apart from others and "
-		      "clearly", best.steps[REFERENCE_ROWS - 1]);
+		      "clearly", steps[REFERENCE_ROWS - 1]);
 	fill_units(&best, step->model->request.single);
 	return best;
 }
