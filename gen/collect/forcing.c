@@ -5,7 +5,7 @@
 enum { BUCKETS = 1024 };
 
 struct forcings {
-	int count;
+	int count, varying;         /* varying: but the one of 1, t, t^2, ..., which every model has */
 	struct forcing *forcing[BUCKETS]; /* by hash */
 };
 
@@ -28,7 +28,8 @@ struct forcing *forcing_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_
 	for (; *link; link = &(*link)->next)
 		if (mpq_equal((*link)->a, a) && mpq_equal((*link)->w, w) && mpq_equal((*link)->p, p))
 			return *link;
-	if (c->forcings->count == LIMIT_FORCINGS)
+	const bool varies = mpq_sgn(a) != 0 || mpq_sgn(w) != 0;
+	if (varies && c->forcings->varying == LIMIT_FORCINGS)
 		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d",
 		      LIMIT_FORCINGS);
 	struct forcing *forcing = *link = NEW(struct forcing);
@@ -36,6 +37,7 @@ struct forcing *forcing_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_
 	mpq_set(forcing->a, a);
 	mpq_set(forcing->w, w);
 	mpq_set(forcing->p, p);
+	c->forcings->varying += varies;
 	forcing->index = c->forcings->count++;
 	forcing->kept = NEW(struct kept_response *);
 	return forcing;
