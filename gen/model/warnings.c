@@ -529,6 +529,13 @@ static void check_phases(const struct model *model)
 			 "times such params it goes on", text_between(sine->start, sine->end));
 }
 
+/* What a reader finds again by its first characters */
+static const char *shortened(const char *text)
+{
+	enum { MOST = 80 };
+	return strlen(text) > MOST ? format("%.*s...", MOST, text) : text;
+}
+
 void warn(struct building *b)
 {
 	const struct model *model = b->model;
@@ -542,7 +549,7 @@ void warn(struct building *b)
 			 model->truncation.adaptive
 				 ? format(", tolerance %s", shortest(round_rational(model->truncation.tolerance)))
 				 : "",
-			 text_between(model->nonlinear.obstacle->start, model->nonlinear.obstacle->end),
+			 shortened(text_between(model->nonlinear.obstacle->start, model->nonlinear.obstacle->end)),
 			 model->nonlinear.why, passed_over(has_contacts(model) ? NULL : b->request->passed_over));
 	check_phases(model);
 	check_need(b, left);

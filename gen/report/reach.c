@@ -14,6 +14,8 @@ void text_reach(FILE *to, const struct step *step)
 	fprintf(to, "A series takes %d multiplications, a value of it %d.\n", multiplications, sum);
 	if (over > 1)
 		fprintf(to, "One is over %d steps: %d multiplications a step.\n", over, step->program->multiplications);
+	if (reach.left_out)
+		return;
 	if (!reach.known) {
 		fputs("At the start the series cannot be made: not all of its coefficients are finite.\n", to);
 		return;

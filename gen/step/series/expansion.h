@@ -118,7 +118,7 @@ int order_of_step(const struct step *step);
 
 enum { EXPANSION_SERVES = 32 };     /* most steps that one expansion serves */
 struct reach {                      /* estimates, at t = 0 from the initial values, inputs 0 */
-	bool known;                 /* every coefficient is finite */
+	bool known, left_out;       /* every coefficient is finite; accelerations choose the formulas */
 	double radius;              /* of convergence [s]; infinite: no singularity is seen */
 	double served;              /* by tolerance: steps that one series serves, below 1 the part of one; else 0 */
 };

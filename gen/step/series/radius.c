@@ -152,6 +152,8 @@ static double find_served(const struct values *v)
 
 struct reach reach_of_series(const struct step *step)
 {
+	if (step->model->equations.implicit && step->taylor.expansion->functions > 0)
+		return (struct reach){ .left_out = true };
 	struct values v = evaluate(step);
 	struct reach reach = { .known = true, .radius = find_radius(&v) };
 	for (int i = 0; i < v.system->states; i++)
