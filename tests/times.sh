@@ -6,7 +6,7 @@
 #     sh tests/times.sh --sum LOG                               seconds by folder of tests, most first, and in all
 if [ "$1" = --sum ]; then
 	awk '{
-		# the first word of the command that is in a folder of tests: some are given to a shell
+		# the first word that is in a folder of tests: some are given to a shell
 		for (i = 2; i < NF && $i !~ /\/tests\/[a-z_]+\//; i++)
 			;
 		folder = $i
