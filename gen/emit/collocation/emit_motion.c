@@ -31,7 +31,7 @@ static const struct form **forms_of(const struct emitter *e, enum motion_part pa
 {
 	const struct motion *m = motion(e);
 	const struct expansion *d = e->step->taylor.switching, *u = e->step->taylor.unresolved;
-	const int entries = part == THE_SLOPES_TOO ? m->entries : 0;
+	const int entries = part == THE_SLOPES_TOO && !m->differences ? m->entries : 0;
 	const bool by_series = meets_contacts(e) && part != THE_ARGUMENTS;
 	*count = by_series ? 0 : part == THE_SWITCHING ? (d ? d->functions : 0)
 		 : part == THE_ARGUMENTS ? (u ? u->unresolved_functions : 0) : m->coords + entries;

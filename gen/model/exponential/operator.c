@@ -382,6 +382,8 @@ static void differentiate_left(void *context)
 	struct model *model = b->model;
 	const struct linear *system = &model->system;
 	const struct form *const *left = (const struct form *const *)model->schedule.operator[0].left;
+	if (model->equations.implicit && system->n > MOST_TOGETHER)
+		return;                         /* derivatives of all iterates: differences take their place */
 	model->remainder.slope = ARRAY(struct form *, (size_t)(model->remainder.force_columns * system->states));
 	for (int i = 0; i < system->states; i++) {
 		struct form **slope = form_derivatives(&b->collector, model->remainder.force_columns, left, false,

@@ -73,10 +73,14 @@ struct smoothness {                 /* of the remainder, else of the equations; 
 	const struct node *singular;
 	const char *singular_where;
 };
+/* Stages of so many coordinates are solved together: beyond, that costs more than exact slopes save. */
+enum { MOST_TOGETHER = 4 };
 struct remainder {                  /* the remainder, of each operator */
 	int force_columns;          /* one for each equation that has some */
 	int *row;                   /* its equation */
-	struct form **slope;        /* of a scheme that collocates: [force column][state], its derivative */
+	/* of a scheme that collocates: [force column][state], its derivative; NULL: of more than MOST_TOGETHER
+	 * coordinates that Newton's method solves for */
+	struct form **slope;
 	bool loads;                 /* known loads are left to the scheme */
 	struct splitting *split;    /* of a scheme in normal modes; else NULL */
 	struct smoothness smooth;

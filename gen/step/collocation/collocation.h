@@ -40,7 +40,8 @@ struct motion {
 	 * beside contacts there are no forms, of slopes neither: set_motion says them */
 	const struct form **force;
 	bool listed;                /* many equations give them: solved by lists */
-	bool differences;           /* ... beside contacts: the Jacobian is full, of differences */
+	/* ... beside contacts, or by Newton's method: the Jacobian is full, of differences */
+	bool differences;
 	bool *driven;
 	int columns;                /* of the loads */
 	double *load, *input;       /* [segment][coordinate][column]; [coordinate][input][value, slope] */

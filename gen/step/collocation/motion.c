@@ -174,7 +174,6 @@ static bool any_listed(const struct step *step, const struct motion *m)
 
 struct motion *motion_of(const struct step *step)
 {
-	enum { TOGETHER = 4 };          /* beyond, what all stages together cost grows past what exact slopes save */
 	const struct linear *system = &step->branch->system;
 	struct motion *m = NEW(struct motion);
 	struct layout layout = layout_of(system, 1);
@@ -182,7 +181,7 @@ struct motion *motion_of(const struct step *step)
 	for (int k = 0; k < system->segments; k++)
 		slopes[k] = augmented_matrix(&layout, system, k);
 	m->coords = system->n;
-	m->apart = system->n > TOGETHER;
+	m->apart = system->n > MOST_TOGETHER;
 	m->force = ARRAY(const struct form *, system->n);
 	m->driven = ARRAY(bool, system->n);
 	if (has_contacts(step->model)) {
@@ -192,11 +191,15 @@ struct motion *motion_of(const struct step *step)
 		find_entries(m, step);
 		return m;
 	}
+	m->differences = !step->model->remainder.slope && step->model->remainder.force_columns > 0;
 	for (int i = 0; i < system->n; i++) {
 		const mpq_t *row = slopes[0] + highest_state(system, i) * layout.size;
 		m->force[i] = force_of(step, &layout, row);
-		add_entries(m, step, &layout, row, i);
+		if (!m->differences)
+			add_entries(m, step, &layout, row, i);
 	}
+	if (m->differences)
+		add_full_entries(m, system);
 	find_drive(m, step, &layout, slopes);
 	m->listed = any_listed(step, m);
 	return m;
