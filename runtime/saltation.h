@@ -31,11 +31,11 @@ static inline int pl_saltation_grazes(PL_REAL size, PL_REAL rate, PL_REAL bend)
     return bend < 0 && rate * rate < -bend * size * known;
 }
 
-/* The same of a guard that is not met: `gap`, its distance where it turns back. */
+/* The same of a guard that is not met: `gap`, its distance where it turns back; below 0 it is met before. */
 static inline int pl_saltation_misses(PL_REAL size, PL_REAL gap)
 {
     const PL_REAL known = sizeof(PL_REAL) == sizeof(float) ? (PL_REAL)0x1p-17 : (PL_REAL)0x1p-34;
-    return gap < size * known;
+    return gap < size * known && gap > -size * known;
 }
 
 /* ---- beside steps of regions ---- */
