@@ -90,10 +90,21 @@ static void look(struct measured *m, int rubs)
 	}
 }
 
+/* A sample begins with so many states, and takes so many steps from each */
+static int states_of(enum kind kind)
+{
+	return kind >= AS_IT_COMES ? 1 : STEPS;
+}
+
+static int chain_of(enum kind kind)
+{
+	return kind <= STICKS ? CHAIN : kind < AS_IT_COMES ? 1 : RUN;
+}
+
 /* Of a step, parts 0: what putting its state there costs */
 static __attribute__((noinline)) double sample(const struct measured *m, enum kind kind, int parts)
 {
-	const int from = kind >= AS_IT_COMES ? 1 : STEPS, chain = kind <= STICKS ? CHAIN : kind < AS_IT_COMES ? 1 : RUN;
+	const int from = states_of(kind), chain = chain_of(kind);
 	const double start = own_nanoseconds();
 	for (int k = 0; k < from; k++) {
 		memcpy(m->state, m->from[kind] + (size_t)(k % m->count[kind]) * m->model->size, m->model->size);
@@ -137,6 +148,7 @@ int main(int argc, char **argv)
 		look(one, rubs);
 		if (one->count[kind] > 0)
 			sample(one, kind, atoi(argv[5]));
+		printf("%d\n", states_of(kind) * chain_of(kind));
 		return one->count[kind] == 0;
 	}
 	for (int of = 0; of < MODELS; of++)

@@ -30,15 +30,16 @@ int %s_segment(const void *s) { return ((const %s *)s)->segment; }\n' "$name" "$
 		>>"$work/${name}_pl.c"
 }
 
-# collected MODEL KIND PARTS: instructions of a sample; status 1 where the model has no such step
+# collected MODEL KIND PARTS: instructions of a sample, and of how many steps; status 1 where the model has no such step
 collected() {
 	valgrind --tool=callgrind --callgrind-out-file=/dev/null --toggle-collect=sample "$work/steps" x "$rubs" "$@" \
-		2>"$work/log" && sed -n 's/.*Collected : //p' "$work/log"
+		2>"$work/log" >"$work/count" && echo "$(sed -n 's/.*Collected : //p' "$work/log") $(cat "$work/count")"
 }
 
-# instructions MODEL KIND: without those of putting states there
+# instructions MODEL KIND: of a step, without those of putting states there
 instructions() {
-	all=$(collected "$@" 1) && none=$(collected "$@" 0) && echo $((all - none))
+	all=$(collected "$@" 1) && none=$(collected "$@" 0) &&
+		echo "$all $none" | awk '{ print ($1 - $3) / $2 }'
 }
 
 # One that changes its formula

@@ -187,7 +187,7 @@ static const struct bound bounds[] = {
 };
 
 /* Where params are tunable all of it so many times, of a step in loops; on top for a step; for the slope of a ramp, a
- * quotient. To the longest of 32 models */
+ * quotient. To the longest of 23 models */
 static const double tuned[][2][4] = {
 	{ { 1.015, 1.13, 150, 100 }, { 1.02, 1.21, 100, 50 } },
 	{ { 1, 1.13, 0, 470 }, { 1, 1.21, 8, 5 } },
