@@ -447,8 +447,8 @@ int main(int argc, char **argv)
     unsigned long random_count = 200, reduced_count = 100, every = 1, seed = 1;
     memory_open();
     take_options(argc, argv, (struct command_option[]){
-        { 'n', &random_count }, { 'r', &reduced_count }, { 'e', &every }, { 's', &seed }, { 'q', .on = &quick },
-        { 'v', .on = &verbose }, { 0 }
+        { 'n', .number = &random_count }, { 'r', .number = &reduced_count }, { 'e', .number = &every },
+        { 's', .number = &seed }, { 'q', .on = &quick }, { 'v', .on = &verbose }, { 0 }
     });
     if (optind == argc) {
         fputs("usage: bitwise [-n RANDOM] [-r REDUCED] [-e EVERY] [-s SEED] [-q] [-v] exponentials.txt "

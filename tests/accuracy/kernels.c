@@ -506,8 +506,8 @@ int main(int argc, char **argv)
     unsigned long random_count = 80, large_count = 5, every = 1, seed = 1;
     memory_open();
     take_options(argc, argv, (struct command_option[]){
-        { 'n', &random_count }, { 'l', &large_count }, { 'e', &every }, { 's', &seed }, { 'w', .on = &whole },
-        { 'v', .on = &verbose }, { 0 }
+        { 'n', .number = &random_count }, { 'l', .number = &large_count }, { 'e', .number = &every },
+        { 's', .number = &seed }, { 'w', .on = &whole }, { 'v', .on = &verbose }, { 0 }
     });
     printf("1..%lu\n", (unsigned long)(argc - optind) + (spec_count + every - 1) / every + random_count + large_count);
     for (int i = optind; i < argc; i++)

@@ -570,7 +570,8 @@ int main(int argc, char **argv)
     unsigned long random_count = 60, undamped_count = 60, seed = 1;
     memory_open();
     take_options(argc, argv, (struct command_option[]){
-        { 'n', &random_count }, { 'u', &undamped_count }, { 's', &seed }, { 'v', .on = &trial.verbose }, { 0 }
+        { 'n', .number = &random_count }, { 'u', .number = &undamped_count }, { 's', .number = &seed },
+        { 'v', .on = &trial.verbose }, { 0 }
     });
     printf("1..%lu\n", (unsigned long)(argc - optind) + TWICE + random_count + undamped_count);
     for (int i = optind; i < argc; i++)

@@ -528,7 +528,7 @@ int main(int argc, char **argv)
     unsigned long pairs = 50, others = 40, seed = 1;
     memory_open();
     take_options(argc, argv, (struct command_option[]){
-        { 'n', &pairs }, { 'm', &others }, { 's', &seed }, { 'v', .on = &verbose }, { 0 }
+        { 'n', .number = &pairs }, { 'm', .number = &others }, { 's', .number = &seed }, { 'v', .on = &verbose }, { 0 }
     });
     if (BITS == 24)
         target_float();

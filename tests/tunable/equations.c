@@ -296,7 +296,7 @@ int main(int argc, char **argv)
     unsigned long count = 100, seed = 1;
     memory_open();
     take_options(argc, argv, (struct command_option[]){
-        { 'n', &count }, { 's', &seed }, { 'v', .on = &verbose }, { 0 }
+        { 'n', .number = &count }, { 's', .number = &seed }, { 'v', .on = &verbose }, { 0 }
     });
     for (int i = optind; i < argc; i++)
         run(base_name(argv[i]), read_text(argv[i]));
