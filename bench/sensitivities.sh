@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # sensitivities.sh BUILD [MODEL...]: what derivatives of 10 s of motion cost at errors of 1e-4, 1e-6, 1e-8 and 1e-10 of
 # the largest: thousands of instructions by valgrind's callgrind, of plgen's taylor by tolerance and of CVODES, forwards
-# and backwards. The truth is plgen's at 1e-15; how far CVODES at its smallest error agrees with it is printed.
+# and backwards; in BUILD/bench sensitivities.csv and sensitivities.svg, with all errors. The truth is plgen's at 1e-15;
+# how far CVODES at its smallest error agrees with it is printed.
 set -e
 build=$(realpath "$1")
 shift
@@ -10,6 +11,9 @@ shift
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
+mkdir -p "$build/bench"
+csv=$build/bench/sensitivities.csv
+echo model,method,family,error,thousand_instructions >"$csv"
 
 # described MODEL: params as `k = 1, c = 0.2` in by; coordinates and starts in coords, init; the equations
 described() {
@@ -58,6 +62,12 @@ points() {
 		      printf "   least error %.0e\n", exp(least) }'
 }
 
+# shown METHOD FAMILY: these, and all in the table
+shown() {
+	tee "$work/all" | points "  $1"
+	awk -v head="$model,$1,$2" '{ printf "%s,%.3g,%.3g\n", head, $1, $2/1000 }' "$work/all" >>"$csv"
+}
+
 echo 'thousands of instructions at 1e-4, 1e-6, 1e-8, 1e-10; gcc -O2, peers -O3'
 for model; do
 	described "$model"
@@ -89,8 +99,10 @@ for model; do
 		for way in forward adjoint; do count "$work/peer" $way $e >>"$work/peer_$way"; done
 	done
 	for way in forward adjoint; do
-		points "  plgen $way" <"$work/ours_$way"
-		points "  CVODES $way" <"$work/peer_$way"
+		shown "plgen $way" ours <"$work/ours_$way"
+		shown "CVODES $way" adaptive <"$work/peer_$way"
 	done
 	rm "$work"/ours_* "$work"/peer_*
 done
+sh bench/charts/picture.sh sensitivities "$build/bench" "$build/bench"
+echo "$build/bench/sensitivities.svg"

@@ -49,6 +49,7 @@ derive operator_boundary.csv operator_boundary.csv fold -v by=method -v lists=wh
 derive papers_beam_tip.csv papers_beam_tip.csv fold -v by=h_s,operator -v lists=t_s,largest_tip_in_last_second_m
 derive quality.csv quality.csv fold -v by=method \
 	-v lists=h_over_T,period_elongation_percent,amplitude_decay_percent_per_period,algorithmic_damping_ratio
+derive sensitivities.csv sensitivities.csv fold -v by=model,method,family -v lists=error,thousand_instructions
 derive stability_boundary.csv stability_boundary.csv fold -v by=method,branch -v lists=wh,zeta
 for name in energy integrators operator_boundary papers_beam_tip quality; do
 	derive $name.csv $name.csv digits -v to=3

@@ -27,8 +27,8 @@ papers|The papers|What the papers found, and what is measured|Source_000=papers_
 convergence|Convergence|Convergence, and where frequencies meet|convergence_scs@convergence.csv:system=scs
  convergence_sdcs@convergence.csv:system=sdcs convergence_sdcsf@convergence.csv:system=sdcsf
  convergence_orders.csv headline_confluence headline_confluence.csv
-limits|Generating, machine, clocks|What generating costs, how near to the machine, how times agree|break_even
- =generation limits limits.csv How_times_agree=precision_check
+limits|Generating, derivatives, clocks|What generating and derivatives cost, how near to the machine, clocks|break_even
+ =generation sensitivities sensitivities.csv limits limits.csv How_times_agree=precision_check
 more|More|More|'
 
 there() {
@@ -185,7 +185,7 @@ page() {
 	EOT
 	[ "$1" = index ] || echo '<a href="index.html">All models</a>'
 	for other in $names; do
-		[ "$other" = "$1" ] || [ "${1#model_}" != "$1" ] || [ ! -f "$folder/$other.html" ] ||
+		[ "$other" = "$1" ] || [ "$1" = model ] || [ ! -f "$folder/$other.html" ] ||
 			printf '<a href="%s.html">%s</a>\n' "$other" "$(topic "$other" 2)"
 	done
 	echo '</nav>'

@@ -107,6 +107,31 @@ plot csv index 0 using 1:2 with linespoints pt 8 lw 1.6 lc rgb '#be3028' title '
 	'' index 1 using 1:2 with linespoints pt 11 lw 1.6 lc rgb '#1f6fe0' title 'down'
 eval write
 
+=== sensitivities: sensitivities.csv
+# Of bench/sensitivities.sh: a panel for each model
+size = '900,640'
+models = first_words(csv)
+unset bmargin
+do for [form=1:forms] {
+	eval begin(form)
+	set multiplot
+	set xrange [50:1e6]; set xtics 100,10,1e6
+	set yrange [1e-14:1]; set ytics 1e-14,100,1
+	set logscale xy; unset mxtics; unset mytics; unset key
+	set lmargin 9; set rmargin 1; set tmargin 2; set bmargin 3.5
+	do for [k=1:words(models)] {
+		set origin 0.4*((k - 1)%2), 0.5 - 0.5*((k - 1)/2); set size 0.4,0.5
+		set title word(models, k) offset 0,-0.6
+		set xlabel (k > 2 ? 'thousands of instructions' : '')
+		set ylabel (k%2 ? 'error of the derivatives' : '')
+		load series(csv, "-v 'where=model=".word(models, k)."' -v x=thousand_instructions -v y=error")
+		eval 'plot '.clauses
+	}
+	eval bare; set origin 0,0; set size 1,1
+	set key at screen 0.99,0.9 right top vertical Left reverse samplen 3 spacing 1.3 font ',11'
+	eval keyed; eval dressed
+}
+
 === break_even: break_even_raw.csv narrow
 # For each model, after how many steps generating and compiling is won back
 names = first_words(csv)
