@@ -366,6 +366,17 @@ static int way_of(const column *w)
     return 0;
 }
 
+/* What a column is at most over h */
+static real most_of(const column *w)
+{
+    real most = w->terms;
+    int k;
+    for (k = 1; k <= w->m->degree; k++) {
+        most += magnitude(column_at(w, k));
+    }
+    return most;
+}
+
 /* Whether a slipping contact is driven to this side: where the static limit is above the sliding force, a force below
  * the limit may do so. */
 static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
@@ -375,9 +386,9 @@ static int is_driven(const pl_events *m, const pl_instant *at, int hold, int up)
     return m->hold[hold].impact < 0 && !holds_now(m, at, hold) && (up ? slope : -slope) > noise_of(velocity.terms);
 }
 
-/* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance.  Where it has just
- * been let go the force may be off by what does not show beside its terms.  Where no force holds it, as along x at
- * (1, 0) of a circle, it is let go. */
+/* Whether what is held would be let go to this side: 1; -1: it is held; 0: it hangs in the balance.  The root at which
+ * it is let go may be off by what does not show beside the force over h, as one of third order is.  Where no force
+ * holds it, as along x at (1, 0) of a circle, it is let go. */
 static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
 {
     column w;
@@ -391,7 +402,7 @@ static int lets_go(const pl_events *m, const pl_instant *at, int hold, int up)
         return 1;
     }
     pull = certain(&w);
-    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * w.terms) {
+    if (at->freed == hold && at->next.upward == up && magnitude(pull) <= NEAR * most_of(&w)) {
         return 1;
     }
     if (pull > 0 || (pull < 0 && is_driven(m, at, hold, up))) {
