@@ -576,8 +576,9 @@ static struct switching *regions_found(struct building *b, int rows, int *row, b
 /* Highest derivatives cannot decide on their own equations; the collector has refused them. */
 struct switching *regions_of_rows(struct building *b, int rows, int *row)
 {
-	const bool walked = b->request->solution;       /* through all of them */
-	struct switching *s = regions_found(b, rows, row, b->spec->request.cached && !walked);
+	/* through all of them; or the model has none but for its derivatives */
+	const bool all = b->request->solution || b->request->again.by_regions;
+	struct switching *s = regions_found(b, rows, row, b->spec->request.cached && !all);
 	if (s->many_in_time && !may_cache(b, s))
 		too_many_in_time(s);
 	if (s->many && (!may_cache(b, s) || frictions_meet(b, s)))
