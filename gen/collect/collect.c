@@ -427,9 +427,9 @@ static struct value *collect_multiplier(struct collector *c, struct node *node)
 {
 	const int index = node->symbol->index;
 	need_constant(c, node, format("constraint '%s'", node->symbol->name));
-	if (c->equation)
+	if (c->equation || (c->output && !c->multiplier))
 		return scalar(form_unit(multiplier_basis(c->frame, index)));
-	if (!c->multiplier || !c->output)
+	if (!c->output)
 		not_linear(c, node, "is a multiplier, which follows from all equations");
 	return scalar(form_alias(c->multiplier[index]));
 }

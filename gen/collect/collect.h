@@ -109,7 +109,7 @@ struct collector {
 	bool equation;              /* an equation is: with KEEP_ALL they may have factors of the state */
 	struct atoms *atoms;
 	const struct frame *frame;  /* NULL: there are no coordinates */
-	/* in outputs: per constraint its multiplier, solved for; NULL: that is not known yet */
+	/* in outputs: per constraint its multiplier, solved for; NULL: the series has it, with what holds */
 	struct form **multiplier;
 	/* tunable params: the spec's values; with KEEP_ALL atoms; held inputs, behind the `inputs` of the spec, but for
 	 * factors, which are numbers, and in outputs atoms */

@@ -2,7 +2,9 @@
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
 #include "steps.h"
 #include "model/reads.h"
+#include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
+#include "emit/series/series.h"
 
 /* The output of a row of that table: NULL behind the last */
 static const struct output *output_of_row(const struct model *model, int row)
@@ -84,9 +86,11 @@ static bool is_wanted(const struct emitter *e, int output)
 	return (!e->at || e->at->output[output]) && is_drawn(e, output) == e->drawn;
 }
 
-/* Of coordinate k: in each region another row where a contact may rest */
+/* Of coordinate k: in each region another row where a contact may rest; beside a series multipliers too */
 static tape_ref highest_derivative(const struct emitter *e, struct tape *t, int k)
 {
+	if (motion_numbers(e))
+		return tape_operand(t, TAPE_FRICTION, k, 0);
 	return is_row_of_regions(e->model, k) ? tape_operand(t, TAPE_FRICTION, e->model->switching->highest[k], 0)
 					      : tape_of_row(t, e->step, e->model->equations.highest[k]);
 }
@@ -109,7 +113,7 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 			value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
 	}
 	const struct reads r = reads_of(written_model(model), forms, form);
-	for (int k = 0; k < written_model(model)->n; k++)
+	for (int k = 0; k < written_model(model)->n + model->spec->count.multipliers; k++)
 		if (r.highest[k])
 			tape_set_local(t, format("accel%d", k + 1),
 				       highest_derivative(e, t, k));
@@ -151,7 +155,32 @@ static void emit_some_outputs(const struct emitter *e)
 	if (remainder)
 		say(e, "    double remainder[%d];\n"
 		       "    %s\n", model->remainder.force_columns, remainder_of_outputs(e));
+	if (motion_numbers(e) && tape_reads(formulas_tape(f), TAPE_FRICTION, -1, -1))
+		say(e, "    double motion[%d];\n"
+		       "    $n_motion_now(s, motion);\n", motion_numbers(e));
 	emit_formulas(f, 4);
+}
+
+/* Of a state that was set the intervals are not known yet. */
+static void emit_motion_now(const struct emitter *e)
+{
+	const bool collocates = e->step->collocation != NULL;
+	open_function(e, "What outputs read of the motion now, with what holds there",
+		      "static void $n_motion_now(const $n *s, double motion[%d])", motion_numbers(e));
+	say(e, "    $n_contact here = s->contact;\n"
+	       "    double start[%d], slope[%d];\n"
+	       "    $n_inputs_now(s, %s, start, slope);\n",
+	    e->system->inputs + 1, e->system->inputs + 1, e->system->inputs ? "s->u" : "NULL");
+	say(e, !collocates ? "    if (!here.placed) { $n_locate(s, %s, &here); }\n"
+			   : "    if (!here.placed) {\n"
+			     "        $n then = *s;\n"
+			     "        $n_commit(&then);\n"
+			     "        (void)$n_look_again(&then, start, slope);\n"
+			     "        here = then.contact;\n"
+			     "    }\n", e->system->inputs ? "s->u" : "NULL");
+	say(e, "    $n_motion_at(s, start, slope, 0.0, %s, %s, here.interval, s->y, motion);\n"
+	       "}\n", spell(e, collocates ? "$n_time(s) + 0x1p-20 * $N_H" : "$n_middle(s)"),
+	    loads_change(e->system) ? "s->segment" : "0");
 }
 
 /* What drawings read stands in a block of its own: what the others share, and so their bits, stays the same. */
@@ -172,6 +201,8 @@ void emit_out(const struct emitter *e)
 	const struct model *model = e->model;
 	if (model->declared_outputs)
 		emit_direct_factors(e);
+	if (motion_numbers(e))
+		emit_motion_now(e);
 	say(e, "\n%s(const $n *s, double out[$N_OUTPUTS])\n"
 	       "{\n", has_peaks(e) ? spell(e, "static void $n_now") : spell(e, "void $n_out"));
 	if (!model->declared_outputs) {

@@ -61,7 +61,9 @@ static tape_ref leaf(struct tape *t, const void *context, const struct basis *ba
 static tape_ref friction_now(struct tape *t, const void *context, const struct atom *atom)
 {
 	const struct formulas *f = context;
-	return tape_operand(t, TAPE_FRICTION, transmitted_of(f->e->model->switching, atom), 0);
+	const struct model *model = f->e->model;
+	return tape_operand(t, TAPE_FRICTION, model->switching ? transmitted_of(model->switching, atom)
+							       : motion_of_friction(model, atom), 0);
 }
 
 /* ---- what interval[] says ---- */
@@ -122,7 +124,10 @@ static const char *operand(const void *context, const struct tape_node *n)
 	case TAPE_ACCUMULATE: return format("s->%s[%d]", n->part == PLACE_CARRY ? "carry" : "low", n->index);
 	case TAPE_PARAM:    return param_local(e, n->index);
 	case TAPE_TIME:     return n->part ? f->when : "t";
-	case TAPE_FRICTION: return format("%s(s, %d)", spell(e, "$n_friction_force"), n->index);
+	case TAPE_FRICTION:
+		if (!e->model->switching)
+			return format("motion[%d]", n->index);
+		return format("%s(s, %d)", spell(e, "$n_friction_force"), n->index);
 	case TAPE_ABOVE:    return format("interval[%d] > %d", n->index, n->part);
 	default: break;
 	}

@@ -31,6 +31,7 @@ struct model_contacts {             /* of regions and of other schemes: gen/mode
 	struct drag *drag;
 	int masses;                 /* mass matrices of the state: the equations that each couples */
 	const struct linear_system **mass;
+	struct form *const *multiplier; /* solved for, without what holds */
 };
 struct model_params {               /* tunable ones: gen/model/tunable */
 	const struct tuning *tuning; /* and how linear equations follow from them; NULL: there are none */

@@ -204,7 +204,7 @@ static void collect_left(void *context)
 	int keep = (int)c->keep;
 	c->keep = KEEP_ALL;
 	c->whole_time = c->output = c->reading = true;
-	c->multiplier = of->multiplier;
+	c->multiplier = gives_motion(work->b->model) ? NULL : of->multiplier;
 	if (of->form[0] && work->b->model->system.segments == 1)
 		work->b->model->frame.form = of->form;
 	forget_lets(work->b->spec);
@@ -233,12 +233,12 @@ static bool becomes_row(struct building *b, int index, struct value *value, bool
 	return row;
 }
 
-/* Does it read a highest derivative, which the force of a contact that rests changes? */
+/* Does it read a highest derivative, which the force of a contact that rests changes, or beside a series friction? */
 static bool may_be_held(const struct building *b, const struct value *value)
 {
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
 	bool held = false;
-	for (int i = 0; i < value->rows * value->columns && has_bounces(b->model); i++)
+	for (int i = 0; i < value->rows * value->columns && (has_bounces(b->model) || gives_motion(b->model)); i++)
 		for (const struct form_term **term = terms_within(value->cell[i], seen); *term; term++)
 			held = held || is_highest(&b->model->frame, &(*term)->basis);
 	return held;
@@ -253,7 +253,7 @@ static void name_outputs(struct building *b)
 			continue;
 		bool row = is_row(b, index), reads_slider_force = false;
 		struct output_work work = { b, s->value, row ? b->segment_equations->output[index] : NULL };
-		row = row && !(b->model->switching && may_be_held(b, work.value));
+		row = row && !((b->model->switching || gives_motion(b->model)) && may_be_held(b, work.value));
 		if (!row)
 			statement_guard(collect_left, &work);
 		row = row || becomes_row(b, index, work.value, &reads_slider_force);
@@ -389,7 +389,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 	for (int i = 0; i < model->outputs; i++) {
 		const struct form *left = model->output[i].left;
 		struct reads reads = reads_of(model, left != NULL, &left);
-		for (int k = 0; k < model->n; k++) {
+		for (int k = 0; k < model->n && !gives_motion(model); k++) {    /* beside a series that has them */
 			if (!reads.highest[k] || model->equations.highest[k])
 				continue;
 			if (model->request.reduce)

@@ -55,7 +55,8 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 {
 	struct reads reading = { ARRAY(bool, model->system.states),
 				 ARRAY(bool, 2 * (size_t)model->system.inputs), ARRAY(bool, model->system.loads),
-				 ARRAY(bool, model->n), ARRAY(bool, held_values(model) + 1), false, false };
+				 ARRAY(bool, model->n + model->spec->count.multipliers),
+				 ARRAY(bool, held_values(model) + 1), false, false };
 	bool *seen = ARRAY(bool, model->equations.atoms ? (size_t)atoms_count(model->equations.atoms) : 0);
 	for (int i = 0; i < count; i++)
 		look_at_form(&reading, model, seen, form[i]);

@@ -18,7 +18,7 @@ int held_values(const struct model *model);     /* that an instance has: tunable
 const struct symbol *held_symbol(const struct model *model, int held);
 struct reads {                    /* what forms read */
 	bool *state, *input, *load; /* inputs, then their slopes */
-	bool *highest;              /* per coordinate: its highest derivative */
+	bool *highest;              /* per coordinate its highest derivative, then multipliers */
 	bool *param;                /* of held_values, where the instance has the spec's params */
 	bool time, math;            /* t itself; <math.h> */
 };

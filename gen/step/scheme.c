@@ -281,6 +281,8 @@ static void divide_step(struct step *step)
 	step->taylor.switching = step->taylor.expansion->functions > 0 ? step->taylor.expansion : NULL;
 	check_series_switching(step);
 	const struct expansion *x = step->taylor.expansion;
+	if (x->motion)
+		step->taylor.motion = motion_of_expansion(step, x);
 	step->taylor.unresolved = x->unresolved_functions > 0 || x->looks || x->crowded > 0 ? x : NULL;
 }
 

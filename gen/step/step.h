@@ -73,6 +73,7 @@ struct taylor_step {                /* what goes by Taylor series; else all NULL
 	struct expansion *switching;  /* whose expressions choose formulas by the state; NULL: none does */
 	const struct expansion *unresolved; /* what polynomials may not show of it bounds them; NULL: nothing does */
 	struct expansion *slopes;   /* of the states, where such a series is looked at further on; else NULL */
+	struct expansion *motion;   /* what outputs read beside contacts; else NULL */
 };
 struct step {                       /* everything that is emitted for one model */
 	const struct model *model;

@@ -227,6 +227,8 @@ void emit_series_functions(const struct emitter *e)
 	emit_expand_from(e);
 	if (e->step->taylor.slopes)
 		emit_slopes_function(by_series(e, e->step->taylor.slopes));
+	if (e->step->taylor.motion)
+		emit_motion_function(by_series(e, e->step->taylor.motion));
 }
 
 static void emit_model_functions(const struct emitter *e)

@@ -205,6 +205,31 @@ void emit_slopes_function(const struct emitter *e)
 	end_function(e, r);
 }
 
+int motion_numbers(const struct emitter *e)
+{
+	return e->step->taylor.motion
+		       ? e->model->n + e->model->spec->count.multipliers + e->model->contacts.drags : 0;
+}
+
+void emit_motion_function(const struct emitter *e)
+{
+	RATIONAL per = ZERO;
+	mpq_inv(per, e->model->h);
+	struct recurrences *r = series_new(e);
+	struct tape *t = tape_of_recurrences(r);
+	begin_function(e, "Highest derivatives, multipliers and forces of friction, with what holds", "motion_at",
+		       format("double motion[%d]", motion_numbers(e)));
+	for (int i = 0; i < motion_numbers(e); i++) {
+		const int sequence = own_expansion(e)->motion[i];
+		if (sequence == NONE)
+			continue;
+		tape_ref value = recurrence_number(r, sequence, i < e->model->n);
+		tape_set(t, format("motion[%d]", i),
+			 i < e->model->n ? tape_scaled(t, round_rational(per), value) : value, 15, NULL);
+	}
+	end_function(e, r);
+}
+
 void emit_frozen_function(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);

@@ -8,6 +8,7 @@
 /* ---- emit_sequences.c: the coefficients of a series ---- */
 
 void emit_slopes_function(const struct emitter *e);               /* NAME_slopes_at, beside an adaptive series */
+void emit_motion_function(const struct emitter *e);               /* NAME_motion_at, for outputs beside contacts */
 bool has_offset(const struct emitter *e);                         /* an expansion may start inside a step */
 void emit_series_locals(const struct emitter *e);                 /* all that is kept, as locals */
 const char *coefficient(const struct emitter *e, int sequence, int k); /* its k-th as a local; NULL: that is 0 */

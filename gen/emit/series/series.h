@@ -57,6 +57,7 @@ void emit_lanes_total(const struct emitter *e);                  /* NAME_lanes_t
 /* Whether $n_inside is there, for the steps that a series serves before its last */
 bool serves_rows(const struct emitter *e);
 
+int  motion_numbers(const struct emitter *e);                     /* beside contacts, for outputs; 0: none are read */
 void emit_frozen_function(const struct emitter *e);               /* NAME_forces_at: the remainder, alone */
 void emit_ends_function(const struct emitter *e);                 /* NAME_ends_at: expressions, alone */
 bool has_choices(const struct emitter *e);                        /* of formulas, by t */

@@ -4,6 +4,7 @@
 #include "model/building.h"
 #include "model/capability.h"
 #include "model/checks.h"
+#include "model/reads.h"
 #include "contacts.h"
 #include "inner.h"
 
@@ -24,6 +25,11 @@ static int drag_of(const struct model *model, const struct atom *atom)
 	while (index >= 0 && model->contacts.drag[index].atom != atom)
 		index--;
 	return index;
+}
+
+int motion_of_friction(const struct model *model, const struct atom *atom)
+{
+	return model->n + model->spec->count.multipliers + drag_of(model, atom);
 }
 
 /* Whether it reads multipliers, with which its force is solved for */
@@ -178,21 +184,21 @@ const struct node *multiplier_in(const struct node *node)
 	return found;
 }
 
-/* The equations of a mechanism are solved without what holds, in outputs. */
-static void refuse_of_mechanism(const struct building *b, const struct output *output, const struct form *form)
+bool *motion_read(const struct model *model)
 {
-	const struct model *model = b->model;
-	const struct node *multiplier = output->value ? multiplier_in(output->value) : NULL;
-	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
-	bool drags = false;
-	for (int i = 0; i < model->contacts.drags; i++)
-		drags = drags || model->contacts.drag[i].moving;
-	if (multiplier && (drags || has_bounces(model)))
-		error(multiplier->start, "its force is that of smooth motion; a stiff spring in its place has one",
-		      "'%s' beside friction or stops is no output", text_between(multiplier->start, multiplier->end));
-	for (const struct form_term **term = terms_within(form, seen); *term && drags; term++)
-		if (is_highest(&b->model->frame, &(*term)->basis))
-			refuse(CAN_CARRIED, model, output->value->start);
+	const int first = model->n + model->spec->count.multipliers;
+	bool *read = ARRAY(bool, first + model->contacts.drags + 1);
+	bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));
+	for (int i = 0; i < model->outputs; i++) {
+		const struct form *form = model->output[i].left ? model->output[i].left : form_number(0);
+		const struct reads reads = reads_of(model, 1, &form);
+		for (int k = 0; k < first; k++)
+			read[k] = read[k] || reads.highest[k];
+		for (const struct form_term **term = terms_within(form, seen); *term; term++)
+			if ((*term)->basis.atom && is_friction((*term)->basis.atom))
+				read[motion_of_friction(model, (*term)->basis.atom)] = true;
+	}
+	return read;
 }
 
 struct asking {
@@ -205,17 +211,18 @@ static void check_output(void *context)
 	const struct asking *work = context;
 	const struct building *b = work->b;
 	const struct model *model = b->model;
+	bool moves = false;
 	size_t atoms = (size_t)atoms_count(b->collector.atoms);
 	bool *seen = ARRAY(bool, atoms), *read = ARRAY(bool, atoms);
 	const struct form *form = work->output->form ? work->output->form : work->output->left;
 	const struct atom *friction = form && !holds_friction(b) ? friction_in(form, seen) : NULL;
 	if (friction)
 		report_no_equation(friction);
-	if (!has_contacts(model))
+	if (!has_contacts(model) || gives_motion(model))
 		return;
-	if (form)
-		refuse_of_mechanism(b, work->output, form);
-	if (form && has_bounces(model))
+	for (int i = 0; i < model->contacts.drags; i++)
+		moves = moves || model->contacts.drag[i].moving;
+	if (form && (has_bounces(model) || moves))
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
 		refuse_in_output(model, work->output, work->output->left, seen);

@@ -125,6 +125,7 @@ int  impact_resting(const struct switching *s, int segment, int function, int in
 /* the interval in which it rests; -1: it is no bounce */
 int  rest_of(const struct switching *s, int segment, const struct impact *impact);
 bool has_contacts(const struct model *model);                /* impacts, friction without regions */
+bool gives_motion(const struct model *model);                /* by a series that goes beside contacts, to outputs */
 bool has_bounces(const struct model *model);
 const char *restitution_text(const struct model *model, const struct impact *impact); /* of a bounce, at all times */
 bool has_dry_friction(const struct switching *s);           /* there is friction, with mass or without */
@@ -136,5 +137,8 @@ const struct node *multiplier_in(const struct node *node);  /* as a text has it,
 void find_contacts(struct building *b);                     /* of the equations for all time */
 void place_contact_loads(struct building *b);
 void check_contact_outputs(struct building *b);             /* says what they cannot read */
+/* What a series beside contacts gives outputs: highest derivatives, multipliers, forces of friction; which are read */
+bool *motion_read(const struct model *model);
+int  motion_of_friction(const struct model *model, const struct atom *atom); /* its place there */
 
 #endif

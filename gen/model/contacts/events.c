@@ -37,6 +37,12 @@ bool has_contacts(const struct model *model)
 	return model->contacts.drags > 0 || (model->contacts.impacts > 0 && !model->switching);
 }
 
+bool gives_motion(const struct model *model)
+{
+	const struct scheme_row *row = scheme_row(model->scheme);
+	return has_contacts(model) && (row->expands || row->collocates);
+}
+
 bool has_bounces(const struct model *model)
 {
 	bool any = false;

@@ -380,6 +380,7 @@ void find_bounce_with_slopes(struct building *b, struct impact *impact)
 void find_masses(struct building *b)
 {
 	struct model_contacts *c = &b->model->contacts;
+	c->multiplier = b->full->multiplier;
 	c->mass = ARRAY(const struct linear_system *, b->full->masses);
 	for (c->masses = 0; c->masses < b->full->masses; c->masses++)
 		c->mass[c->masses] = &b->full->mass[c->masses].system;

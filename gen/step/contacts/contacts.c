@@ -488,6 +488,33 @@ int held_force(struct sequencing *w, int force_column)
 	return sum_sequence(w, &force);
 }
 
+static int motion_sequence(struct sequencing *w, int place)
+{
+	const struct contacts *c = w->x->contacts;
+	const int n = w->system->n, drag = place - n - w->step->model->spec->count.multipliers;
+	int hold = 0;
+	if (place < n)
+		return highest_state(w->system, place);
+	if (drag < 0 && w->highest[place] == NONE)
+		return sequence_of_form(w, w->step->model->contacts.multiplier[place - n]);
+	while (drag >= 0 && c->hold[hold].drag != drag)
+		hold++;
+	return drag < 0 ? w->highest[place] : c->hold[hold].force;
+}
+
+int *motion_sequences(struct sequencing *w)
+{
+	const struct model *model = w->step->model;
+	const int count = w->system->n + model->spec->count.multipliers + model->contacts.drags;
+	const bool *read = motion_read(model);
+	int *sequence = ARRAY(int, count), any = 0;
+	for (int i = 0; i < count; i++) {
+		sequence[i] = read[i] ? motion_sequence(w, i) : NONE;
+		any += read[i];
+	}
+	return any ? sequence : NULL;
+}
+
 /* The target has those that hold, and impacts, as bits. */
 static void check_number(const struct constraints *all)
 {
@@ -536,5 +563,6 @@ void hold_contacts(struct sequencing *w)
 		c->hold[i].force_direction = all.constraint[i].slope_direction;
 		c->hold[i].gives = all.constraint[i].gives;
 		c->hold[i].only = only_state(w, &all.constraint[i]);
+		c->hold[i].drag = all.constraint[i].drag;
 	}
 }

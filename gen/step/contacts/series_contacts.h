@@ -20,6 +20,7 @@ struct series_hold {                /* a velocity that is kept at 0: by friction
 	double *back;               /* per state: what is taken from it for a velocity of 1, */
 	int *back_watch;            /* or the watch of that; NONE: the number */
 	int force, only;            /* a sequence; the only state of the velocity, or NONE */
+	int drag;                   /* whose friction it is; NONE */
 	struct entry *force_direction; /* per state: what that force, 1, adds to its slope */
 	struct entry *gives;        /* per force column: likewise */
 };
@@ -67,6 +68,8 @@ struct sum held_slope(struct sequencing *w, int state);
 /* of a force column: the slope that is solved for, with what holds; NONE: it is not */
 int  solved_force(const struct sequencing *w, int force_column);
 int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
+/* Of what outputs read: the sequence, of a highest derivative that of its state; NULL: they read nothing of it */
+int *motion_sequences(struct sequencing *w);
 
 /* switching.c: those whose way counts stand first */
 void sort_watches(struct contacts *c, int states);

@@ -288,6 +288,7 @@ static struct expansion *expand(const struct step *step, int order, bool with_fo
 		make_forces(w);
 	for (int i = 0; i < system->states; i++)
 		expand_state(w, i);
+	w->x->motion = w->x->contacts ? motion_sequences(w) : NULL;
 	rank_breakpoints(w);
 	w->x->unresolved = unresolved_of(model, &w->x->unresolved_functions, &w->x->looks);
 	w->x->crowded = model->truncation.adaptive ? crowded_frequency(system) : 0;
@@ -323,5 +324,18 @@ struct expansion *part_of_expansion(const struct step *step, const struct expans
 	for (int c = 0; c < x->columns; c++)
 		x->column_top[c] = order;
 	find_extent(step, x);
+	return x;
+}
+
+struct expansion *motion_of_expansion(const struct step *step, const struct expansion *full)
+{
+	const struct model *model = step->model;
+	const int count = model->n + model->spec->count.multipliers + model->contacts.drags;
+	int *column = ARRAY(int, count), columns = 0;
+	for (int i = 0; i < count; i++)
+		if (full->motion[i] != NONE)
+			column[columns++] = full->motion[i];
+	struct expansion *x = part_of_expansion(step, full, 1, columns, column);
+	x->motion = full->motion;
 	return x;
 }

@@ -35,6 +35,7 @@ struct expansion {
 	struct contacts *contacts;  /* NULL: there are none */
 	/* per force column: the remainder, as a sequence; NULL: it stands in the states' sums */
 	int *force, *held;          /* held: with what holds beside it */
+	int *motion;                /* beside contacts, what outputs read of it; NULL: nothing */
 	bool alone;                 /* the states' own coefficients are not wanted */
 	struct lines *lines;        /* NULL: it is short, and straight code */
 	int multiplications;        /* of one expansion, that of its end and of the loads with it */
@@ -106,6 +107,8 @@ struct expansion *expansion_of(const struct step *step, int order);
 struct expansion *expansion_with_forces(const struct step *step, int order);
 struct expansion *part_of_expansion(const struct step *step, const struct expansion *full, int order, int columns,
 				    int *column);
+
+struct expansion *motion_of_expansion(const struct step *step, const struct expansion *full);
 
 /* ---- order.c: the order of a series ---- */
 
