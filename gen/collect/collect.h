@@ -23,8 +23,8 @@ struct basis {
 	bool sine;
 	const struct atom *atom;    /* of BASIS_ATOM: an expression that the linear core cannot carry */
 };
-struct kept_response {              /* of load state `to` to load state `from`: step/loads.c */
-	int to, from;
+struct kept_response {              /* e^{a tau} times these of cos w tau and sin w tau: step/linear/loads.c */
+	long cosine, sine;
 	struct response *response;
 	struct kept_response *next;
 };

@@ -2,6 +2,8 @@
 /* Loads in time: the forms of t^k e^{at} cos(wt+p) and sin, and their products. */
 #include "collect/collect.h"
 
+#include <math.h>
+
 enum { BUCKETS = 1024 };
 
 struct forcings {
@@ -32,6 +34,11 @@ struct forcing *forcing_of(struct collector *c, mpq_srcptr a, mpq_srcptr w, mpq_
 	if (varies && c->forcings->varying == LIMIT_FORCINGS)
 		error(c->term->start, NULL, "more loads of different frequency, phase or growth than the limit of %d",
 		      LIMIT_FORCINGS);
+	mpq_srcptr part[] = { a, w, p };
+	for (int i = 0; i < 3; i++)
+		if (!isfinite(nearest_double(part[i])))
+			error(c->term->start, NULL, "the %s of a load is beyond the range of double",
+			      (const char *[]){ "growth", "frequency", "phase" }[i]);
 	struct forcing *forcing = *link = NEW(struct forcing);
 	mpq_inits(forcing->a, forcing->w, forcing->p, NULL);
 	mpq_set(forcing->a, a);

@@ -199,6 +199,7 @@ struct response {                   /* scale * N/D, N and D coprime */
 	bool alone;                 /* then no pole but 0 is summed */
 };
 struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D);
+struct response *response_scaled(const struct response *response, mpq_srcptr factor);
 /* The same less the residues at a +- i w, w >= 0, roots of `pole`, which a load alone has brought in */
 struct response *response_without(const struct response *whole, struct poly pole, mpq_srcptr a, mpq_srcptr w);
 /* True if the value at tau is rational: then `exact` is it. False: it is transcendental, and response_enclose

@@ -7,6 +7,8 @@
 
 enum {
 	GUARD_BITS = 32,
+	FIRST_SCREEN = 128,             /* bits with which enclosing begins, so that nothing is found twice */
+	LAST_SCREEN = 1024,
 	LONGEST_COURSE = 32,            /* products of exponentials in a row: turned rectangles widen by up to sqrt 2 */
 	LIMIT_COURSES = 128
 };
@@ -80,9 +82,11 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 	RATIONAL content = ZERO;
 	mpq_inits(response->scale, response->last, NULL);
 	if (N.length > 0) {
-		struct poly common = poly_gcd(N, D);
-		N = poly_primitive(poly_divide(N, common), mpq_numref(content));
-		D = poly_primitive(poly_divide(D, common), mpq_denref(content));
+		struct poly common = poly_gcd(N, D), n = poly_divide(N, common), d = poly_divide(D, common);
+		N = poly_primitive(n, mpq_numref(content));
+		D = poly_primitive(d, mpq_denref(content));
+		clear_integers(&n.c);
+		clear_integers(&d.c);
 		mpq_canonicalize(content);
 		mpq_mul(response->scale, scale, content);
 	} else {
@@ -91,8 +95,19 @@ struct response *response_of(mpq_srcptr scale, struct poly N, struct poly D)
 	}
 	response->N = N;
 	response->spectrum = spectrum_of(D);
+	if (response->spectrum->D.c != D.c)
+		clear_integers(&D.c);
 	residue_at_zero(response);
 	return response;
+}
+
+struct response *response_scaled(const struct response *response, mpq_srcptr factor)
+{
+	struct response *scaled = NEW(struct response);
+	*scaled = *response;
+	mpq_inits(scaled->scale, scaled->last, NULL);
+	mpq_mul(scaled->scale, response->scale, factor);
+	return scaled;
 }
 
 struct response *response_without(const struct response *whole, struct poly pole, mpq_srcptr a, mpq_srcptr w)
@@ -146,37 +161,6 @@ static bool residue_vanishes(const struct response *response, const struct facto
 		sum = poly_add(sum, poly_scale(poly_mul(w[m - 1 - k], v0[k]), weight));
 	}
 	return poly_divides(factor->g, sum);
-}
-
-/* Lindemann and Weierstrass: with tau != 0 rational the exponentials of distinct poles are independent over the
- * algebraic numbers, so the value is rational only if every residue away from 0 vanishes; a simple one never does. */
-bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact)
-{
-	const struct spectrum *spectrum = response->spectrum;
-	if (response->a) {
-		value_at_zero(response, tau, exact);
-		mpq_mul(exact, exact, response->scale);
-		return response->alone;
-	}
-	if (mpq_sgn(tau) == 0) {                /* the limit s N/D at infinity */
-		mpq_set_ui(exact, 0, 1);
-		if (response->N.length > 0 && response->N.length + 1 == spectrum->D.length) {
-			mpz_set(mpq_numref(exact), response->N.c[response->N.length - 1]);
-			mpz_set(mpq_denref(exact), spectrum->D.c[spectrum->D.length - 1]);
-			mpq_canonicalize(exact);
-			mpq_mul(exact, exact, response->scale);
-		}
-		return true;
-	}
-	for (int f = 0; f < spectrum->factors; f++)
-		if (spectrum->factor[f].multiplicity == 1)
-			return false;
-	for (int f = 0; f < spectrum->factors; f++)
-		if (!residue_vanishes(response, &spectrum->factor[f], tau))
-			return false;
-	value_at_zero(response, tau, exact);
-	mpq_mul(exact, exact, response->scale);
-	return true;
 }
 
 /* ---- enclosures ---- */
@@ -340,26 +324,79 @@ static void find_residues(struct response *response, int precision)
 	response->precision = precision;
 }
 
+/* sum_k a_k tau^k/k! by Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
+static void residue_at(struct rectangle *total, int m, const struct rectangle *a, mpq_srcptr tau)
+{
+	RATIONAL power = ZERO;
+	rectangle_set(total, &a[m - 1]);
+	for (int k = m - 2; k >= 0; k--) {
+		mpq_set_ui(power, 1, (unsigned long)k + 1);
+		mpq_mul(power, power, tau);
+		mpfi_mul_q(total->re, total->re, power);
+		mpfi_mul_q(total->im, total->im, power);
+		mpfi_add(total->re, total->re, a[k].re);
+		mpfi_add(total->im, total->im, a[k].im);
+	}
+}
+
 /* sum += (2) Re e^{p tau} sum_k a_k tau^k/k! */
 static void add_residue(const struct pole *pole, int m, const struct rectangle *a, const struct rectangle *exponential,
 			mpq_srcptr tau, mpfi_ptr sum)
 {
-	int precision = (int)mpfi_get_prec(sum);
-	RECTANGLE total = new_rectangle(precision);
-	RATIONAL power = ZERO;
-	rectangle_set(&total, &a[m - 1]);
-	for (int k = m - 2; k >= 0; k--) {      /* Horner: (a_{m-1} tau/(m-1) + a_{m-2}) tau/(m-2) ... */
-		mpq_set_ui(power, 1, (unsigned long)k + 1);
-		mpq_mul(power, power, tau);
-		mpfi_mul_q(total.re, total.re, power);
-		mpfi_mul_q(total.im, total.im, power);
-		mpfi_add(total.re, total.re, a[k].re);
-		mpfi_add(total.im, total.im, a[k].im);
-	}
+	RECTANGLE total = new_rectangle((int)mpfi_get_prec(sum));
+	residue_at(&total, m, a, tau);
 	rectangle_real_product(total.re, &total, exponential);
 	if (!pole->real)
 		mpfi_mul_2ui(total.re, total.re, 1);
 	mpfi_add(sum, sum, total.re);
+}
+
+/* An enclosure without 0 decides at once what polynomials of degree m^2 would. */
+static bool surely_transcendental(struct response *response, mpq_srcptr tau)
+{
+	struct spectrum *spectrum = response->spectrum;
+	bool sure = spectrum->factors == 0;
+	for (int bits = FIRST_SCREEN; !sure && bits <= LAST_SCREEN && spectrum_refine(spectrum, bits); bits *= 2) {
+		denominator_series(spectrum, bits);
+		find_residues(response, bits);
+		RECTANGLE total = new_rectangle(bits + GUARD_BITS);
+		residue_at(&total, spectrum->factor[0].multiplicity, response->residue[0][0], tau);
+		sure = mpfi_has_zero(total.re) <= 0 || mpfi_has_zero(total.im) <= 0;
+	}
+	return sure && spectrum->factors > 0;
+}
+
+/* Lindemann and Weierstrass: with tau != 0 rational the exponentials of distinct poles are independent over the
+ * algebraic numbers, so the value is rational only if every residue away from 0 vanishes; a simple one never does. */
+bool response_exact(struct response *response, mpq_srcptr tau, mpq_ptr exact)
+{
+	const struct spectrum *spectrum = response->spectrum;
+	if (response->a) {
+		value_at_zero(response, tau, exact);
+		mpq_mul(exact, exact, response->scale);
+		return response->alone;
+	}
+	if (mpq_sgn(tau) == 0) {                /* the limit s N/D at infinity */
+		mpq_set_ui(exact, 0, 1);
+		if (response->N.length > 0 && response->N.length + 1 == spectrum->D.length) {
+			mpz_set(mpq_numref(exact), response->N.c[response->N.length - 1]);
+			mpz_set(mpq_denref(exact), spectrum->D.c[spectrum->D.length - 1]);
+			mpq_canonicalize(exact);
+			mpq_mul(exact, exact, response->scale);
+		}
+		return true;
+	}
+	for (int f = 0; f < spectrum->factors; f++)
+		if (spectrum->factor[f].multiplicity == 1)
+			return false;
+	if (surely_transcendental(response, tau))
+		return false;
+	for (int f = 0; f < spectrum->factors; f++)
+		if (!residue_vanishes(response, &spectrum->factor[f], tau))
+			return false;
+	value_at_zero(response, tau, exact);
+	mpq_mul(exact, exact, response->scale);
+	return true;
 }
 
 bool response_enclose(struct response *response, mpq_srcptr tau, int precision, mpfi_ptr value)

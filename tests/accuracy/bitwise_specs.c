@@ -129,6 +129,7 @@ const struct bitwise_spec bitwise_specs[] = {
     { "free mass under t^2 exp(-t)", ONE "x'' = t^2*exp(-t)\n" STEP, PLAIN },
     { "oscillator under t^3", ONE "x'' + 0.1*x' + 25*x = t^3 - t + 2\n" STEP, PLAIN },
     { "t cos at the natural frequency", ONE "x'' + 25*x = t*cos(5*t + 0.3)\n" STEP, PLAIN },
+    { "t^32 cos", ONE "x'' + 0.1*x' + 25*x = t^32*cos(3*t)\n" STEP, PLAIN },
     { "t^2 sin at the natural frequency", ONE "x'' + 25*x = t^2*sin(5*t)\n" STEP, PLAIN },
     { "damped resonance", ONE "x'' + 2*x' + 26*x = exp(-t)*cos(5*t)\n" STEP, PLAIN },
     { "damped resonance with t and a phase", ONE "x'' + 2*x' + 26*x = 3*t*exp(-t)*sin(5*t + 1)\n" STEP, PLAIN },

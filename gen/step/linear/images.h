@@ -29,8 +29,8 @@ struct response *image_of(struct resolvent *r, const struct question *question);
 
 struct response *response_of_input(struct resolvent *r, const struct linear *system, int i, int input, int column,
 				   mpq_srcptr h);
-/* of one load: z_to(t+tau) from z_from(t) */
-struct response *response_of_load_state(const struct load *load, int to, int from);
+/* of one load: z_to(t+tau) from z_from(t), at this tau alone */
+struct response *response_of_load_state(const struct load *load, int to, int from, mpq_srcptr tau);
 /* what its unit force gives the states' derivatives */
 mpq_t *impulse_of_force_column(const struct linear *system, int force_column);
 struct started {                    /* a response that starts at a time of its own */

@@ -53,7 +53,7 @@ static struct coefficient *step_of_load(const struct step *step, const struct lo
 	int n = load->columns;
 	struct coefficient *cell = ARRAY(struct coefficient, (size_t)n * (size_t)n);
 	for (int i = 0; i < n * n; i++) {
-		struct response *response = response_of_load_state(load, i / n, i % n);
+		struct response *response = response_of_load_state(load, i / n, i % n, model->h);
 		cell[i] = response_value(response, model->h, true, model->request.at.step, column_text(load, i / n));
 	}
 	return cell;

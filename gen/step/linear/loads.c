@@ -148,26 +148,30 @@ struct response *response_of_phi_weight(struct resolvent *r, const struct linear
 	return image_of(r, &(struct question){ start, part->powers > 0, &e, unit(system->states, i) });
 }
 
-struct response *response_of_load_state(const struct load *load, int to, int from)
+/* e^{a tau} times a cosine or a sine, by their factors */
+static struct response *response_of_turn(const struct forcing *forcing, long cosine, long sine)
 {
-	struct kept_response **kept = load->forcing->kept;
-	for (struct kept_response *k = *kept; k; k = k->next)
-		if (k->to == to && k->from == from)
+	for (struct kept_response *k = *forcing->kept; k; k = k->next)
+		if (k->cosine == cosine && k->sine == sine)
 			return k->response;
 	struct linear scalar = first_order_system(1, rationals(1));
-	struct excitation e = excitation_new(1, load->forcing->a, load->forcing->w, load->powers);
-	struct transition t = transition_of(load, to, from);
-	RATIONAL one = RATIO(1, 1);
-	if (t.m >= 0) {
-		add_scaled(e.direct[2 * t.m], one, t.cosine, t.binomial);
-		add_scaled(e.direct[2 * t.m + 1], one, t.sine, t.binomial);
-	}
+	struct excitation e = excitation_new(1, forcing->a, forcing->w, 1);
+	mpq_set_si(e.direct[0], cosine, 1);
+	mpq_set_si(e.direct[1], sine, 1);
 	struct question question = { NULL, 1, &e, rationals(1) };
-	struct response *response = image_of(resolvent_of(&scalar), &question);
 	struct kept_response *first = NEW(struct kept_response);
-	*first = (struct kept_response){ to, from, response, *kept };
-	*kept = first;
-	return response;
+	*first = (struct kept_response){ cosine, sine, image_of(resolvent_of(&scalar), &question), *forcing->kept };
+	*forcing->kept = first;
+	return first->response;
+}
+
+struct response *response_of_load_state(const struct load *load, int to, int from, mpq_srcptr tau)
+{
+	const struct transition t = transition_of(load, to, from);
+	RATIONAL factor = RATIO((long)t.binomial, 1);
+	for (int k = 0; k < t.m; k++)
+		mpq_mul(factor, factor, tau);
+	return response_scaled(response_of_turn(load->forcing, t.m < 0 ? 0 : t.cosine, t.m < 0 ? 0 : t.sine), factor);
 }
 
 /* z = t^j e^{a t} cos or sin(w t + p); the functions are irrational unless their argument is 0, then rationals of 256

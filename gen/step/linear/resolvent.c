@@ -38,11 +38,29 @@ static struct poly constant_poly(unsigned long value)
 	return p;
 }
 
+/* The images of high powers are long, and there are many: what nobody else holds is given back. */
+static void replace(struct poly *p, struct poly by)
+{
+	clear_integers(&p->c);
+	*p = by;
+}
+
+static void multiply(struct poly *p, struct poly by)
+{
+	replace(p, poly_mul(*p, by));
+}
+
+static void add(struct poly *p, struct poly term)
+{
+	replace(p, poly_add(*p, term));
+	clear_integers(&term.c);
+}
+
 static struct poly poly_power(struct poly p, int exponent)
 {
 	struct poly power = constant_poly(1);
 	for (int i = 0; i < exponent; i++)
-		power = poly_mul(power, p);
+		multiply(&power, p);
 	return power;
 }
 
@@ -158,40 +176,47 @@ static struct oscillation oscillation_of(const struct excitation *e)
 	return o;
 }
 
-/* Numerators over D^{m+1} of tau^m e^{a tau} cos(w tau) (or, w = 0, alone) and sin(w tau) */
-static void transform(const struct oscillation *o, int m, struct poly *cosine, struct poly *sine)
+/* p = a p + b r */
+static void replace_by_sum(struct poly *p, struct poly a, mpz_srcptr b, struct poly r)
 {
-	struct poly re = constant_poly(1), im = poly_new(0);
-	INTEGER factor = INTEGER_ZERO;
-	mpz_fac_ui(factor, (unsigned long)m);
-	for (int k = 0; k <= m; k++) {
-		struct poly keep = re;
-		mpz_mul(factor, factor, o->q);
-		if (mpz_sgn(o->W) == 0)
-			continue;
-		re = poly_sub(poly_mul(re, o->U), poly_scale(im, o->W));
-		im = poly_add(poly_mul(im, o->U), poly_scale(keep, o->W));
-	}
-	*cosine = poly_scale(re, factor);
-	*sine = poly_scale(im, factor);
+	struct poly product = poly_mul(*p, a), scaled = poly_scale(r, b);
+	replace(p, poly_add(product, scaled));
+	clear_integers(&product.c);
+	clear_integers(&scaled.c);
 }
 
-/* scale * (numerator over D^powers) of sum_m factor[m][0] cos + factor[m][1] sin; `stride` apart in `factor` */
+/* (U + iW) (re + i im) */
+static void turn(const struct oscillation *o, struct poly *re, struct poly *im)
+{
+	INTEGER minus = INTEGER_ZERO;
+	mpz_neg(minus, o->W);
+	struct poly before = poly_shift(*re, 0);
+	replace_by_sum(re, o->U, minus, *im);
+	replace_by_sum(im, o->U, o->W, before);
+	clear_integers(&before.c);
+}
+
+/* scale * (numerator over D^powers) of sum_m factor[m][0] cos + factor[m][1] sin; `stride` apart in `factor`. Over
+ * D^{m+1} the numerators are m! q^{m+1} times Re and Im (U + iW)^{m+1}, or 1 where w = 0; Horner's rule adds them. */
 static struct poly excitation_image(const struct excitation *e, const struct oscillation *o, const mpq_t *factor,
 				    int stride, mpz_srcptr scale)
 {
-	struct poly sum = poly_new(0), part[2];
-	INTEGER z = INTEGER_ZERO;
+	struct poly sum = poly_new(0), re = constant_poly(1), im = poly_new(0), one = constant_poly(1);
+	INTEGER z = INTEGER_ZERO, common = INTEGER_ZERO;
+	mpz_set(common, scale);
 	for (int m = 0; m < e->powers; m++) {
-		transform(o, m, &part[0], &part[1]);
-		struct poly rest = poly_power(o->D, e->powers - 1 - m);
-		for (int k = 0; k < 2; k++) {
-			if (mpq_sgn(factor[(2 * m + k) * stride]) == 0)
-				continue;
-			scaled_integer(z, scale, factor[(2 * m + k) * stride]);
-			sum = poly_add(sum, poly_mul(poly_scale(part[k], z), rest));
-		}
+		mpz_mul(common, common, o->q);
+		mpz_mul_ui(common, common, m > 0 ? (unsigned long)m : 1);
+		if (mpz_sgn(o->W) != 0)
+			turn(o, &re, &im);
+		scaled_integer(z, common, factor[2 * m * stride]);
+		replace_by_sum(&sum, o->D, z, re);
+		scaled_integer(z, common, factor[(2 * m + 1) * stride]);
+		replace_by_sum(&sum, one, z, im);
 	}
+	clear_integers(&re.c);
+	clear_integers(&im.c);
+	clear_integers(&one.c);
 	return sum;
 }
 
@@ -221,10 +246,11 @@ static struct denominators find_denominators(const struct question *ask)
 	}
 	for (int l = 0; l < ask->excitations; l++) {
 		struct poly power = poly_power(p.o[l].D, ask->excitation[l].powers);
-		p.all = poly_mul(p.all, power);
+		multiply(&p.all, power);
 		for (int other = 0; other < ask->excitations; other++)
 			if (other != l)
-				p.without[other] = poly_mul(p.without[other], power);
+				multiply(&p.without[other], power);
+		clear_integers(&power.c);
 	}
 	return p;
 }
@@ -269,9 +295,13 @@ static struct poly right_side(const struct resolvent *r, const struct question *
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
 		struct poly image = excitation_image(e, &p->o[l], e->force + k, r->system->n, scale);
-		sum = poly_add(sum, poly_mul(poly_scale(image, r->row[k]), p->without[l]));
+		replace(&image, poly_scale(image, r->row[k]));
+		multiply(&image, p->without[l]);
+		add(&sum, image);
 	}
-	return poly_add(sum, poly_mul(start, p->all));
+	multiply(&start, p->all);
+	add(&sum, start);
+	return sum;
 }
 
 /* row i of adj P times a vector of polynomials */
@@ -280,14 +310,30 @@ static struct poly adjugate_row(const struct resolvent *r, int i, const struct p
 	struct poly sum = poly_new(0);
 	for (int k = 0; k < r->adj.n; k++)
 		if (x[k].length > 0)
-			sum = poly_add(sum, poly_mul(r->adj.cell[i * r->adj.n + k], x[k]));
+			add(&sum, poly_mul(r->adj.cell[i * r->adj.n + k], x[k]));
 	return sum;
 }
 
-struct response *image_of(struct resolvent *r, const struct question *ask)
+/* Without the powers that have no factors: a load state has but a few of those of its load. */
+static struct question least_powers(const struct question *ask, int n)
+{
+	struct question least = *ask;
+	struct excitation *e = ARRAY(struct excitation, ask->excitations);
+	for (int l = 0; l < ask->excitations; l++) {
+		e[l] = ask->excitation[l];
+		while (e[l].powers > 0 && rationals_zero(2 * (size_t)n, e[l].force + 2 * (e[l].powers - 1) * n) &&
+		       rationals_zero(2, e[l].direct + 2 * (e[l].powers - 1)))
+			e[l].powers--;
+	}
+	least.excitation = e;
+	return least;
+}
+
+struct response *image_of(struct resolvent *r, const struct question *whole)
 {
 	const struct linear *system = r->system;
 	int n = system->n;
+	const struct question least = least_powers(whole, n), *ask = &least;
 	need_adjugate(r);
 	INTEGER scale = INTEGER_ZERO, factor = INTEGER_ZERO, rows = INTEGER_ZERO;
 	mpz_set_ui(rows, 1);
@@ -306,16 +352,24 @@ struct response *image_of(struct resolvent *r, const struct question *ask)
 			image = poly_shift(image, 1);
 		if (i >= n && ask->initial) {
 			scaled_integer(factor, scale, ask->initial[coord]);
-			image = poly_sub(image, poly_scale(D, factor));
+			mpz_neg(factor, factor);
+			add(&image, poly_scale(D, factor));
 		}
 		scaled_integer(factor, rows, ask->row[i]);
-		N = poly_add(N, poly_scale(image, factor));
+		add(&N, poly_scale(image, factor));
+		clear_integers(&image.c);
 	}
 	for (int l = 0; l < ask->excitations; l++) {
 		const struct excitation *e = &ask->excitation[l];
-		direct = poly_add(direct, poly_mul(excitation_image(e, &p.o[l], e->direct, 1, scale), p.without[l]));
+		struct poly image = excitation_image(e, &p.o[l], e->direct, 1, scale);
+		multiply(&image, p.without[l]);
+		add(&direct, image);
 	}
-	N = poly_add(N, poly_scale(poly_mul(direct, r->B), rows));
+	multiply(&direct, r->B);
+	add(&N, poly_scale(direct, rows));
+	clear_integers(&direct.c);
+	for (int k = 0; k < n; k++)
+		clear_integers(&x[k].c);
 	RATIONAL unit = ZERO;
 	mpz_set_ui(mpq_numref(unit), 1);
 	mpz_mul(mpq_denref(unit), scale, rows);

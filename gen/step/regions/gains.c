@@ -40,7 +40,7 @@ void growth_of_loads(const struct step *step, mpq_srcptr d, double *Phi, double 
 		const struct load *load = &system->load[l];
 		int n = load->columns, at = layout->load[l];
 		for (int i = 0; i < n * n && at >= 0; i++) {
-			struct response *response = response_of_load_state(load, i / n, i % n);
+			struct response *response = response_of_load_state(load, i / n, i % n, d);
 			const struct coefficient c = response_value(response, d, low, step->model->request.at.step,
 								    column_text(load, i / n));
 			const int cell = (at + i / n) * layout->size + at + i % n;
