@@ -495,6 +495,22 @@ static void check_kinetic_energy(const struct building *b)
 	}
 }
 
+/* No force comes of a jump with a coordinate: what is derived is each formula by itself. */
+static void check_energies_meet(struct building *b)
+{
+	for (int k = 0; k < 2; k++) {
+		const struct form *form = equations_of(b)->energy[k];
+		const char *where = form ? jump_with_state(b, form) : NULL;
+		const struct energy *energy = b->spec->lagrange.energy;
+		while (where && energy->kind != "TV"[k])
+			energy++;
+		if (where)
+			say_warning(energy->at,
+				    "a constant in one formula makes them meet; an impact is written by `when`",
+				    "%c jumps where %s, and no force comes of that", "TV"[k], where);
+	}
+}
+
 struct passed { struct building *b; struct point *start; const struct impact *impact; };
 
 static void check_start(void *context)
@@ -559,6 +575,7 @@ void warn(struct building *b)
 	check_guards(b);
 	check_starts(b);
 	check_kinetic_energy(b);
+	check_energies_meet(b);
 	const struct scheme_row *scheme = scheme_row(model->scheme);
 	/* in normal modes a step's spectral radius tells more */
 	if (!left || !scheme->leaves || scheme->expands || scheme->modes || is_linear(b) ||

@@ -436,6 +436,17 @@ static const struct form *moving_part(const struct form *residual)
 	return form_difference(residual, time_part(residual, false));
 }
 
+static struct search new_search(struct building *b, struct spot *spot)
+{
+	struct search s = { .b = b, .count = atoms_count(b->collector.atoms), .spot = spot };
+	mpfr_inits2(PRECISION, spot->value, spot->t, NULL);
+	s.touched = ARRAY(signed char, s.count);
+	s.known = ARRAY(struct form *, s.count);
+	s.seen = ARRAY(bool, s.count);
+	s.sample = sample_new(PRECISION, spot_leaf, spot);
+	return s;
+}
+
 static void judge(void *context)
 {
 	struct building *b = context;
@@ -443,12 +454,7 @@ static void judge(void *context)
 	bool left = model->remainder.force_columns > 0;
 	int count = left ? model->remainder.force_columns : model->n;
 	struct spot spot = { 0 };
-	struct search s = { .b = b, .count = atoms_count(b->collector.atoms), .spot = &spot };
-	mpfr_inits2(PRECISION, spot.value, spot.t, NULL);
-	s.touched = ARRAY(signed char, s.count);
-	s.known = ARRAY(struct form *, s.count);
-	s.seen = ARRAY(bool, s.count);
-	s.sample = sample_new(PRECISION, spot_leaf, &spot);
+	struct search s = new_search(b, &spot);
 	for (int i = 0; i < count; i++) {
 		const struct form *form = left ? model->schedule.operator[0].left[i]
 		    : moving_part(b->full->residual[i].form);
@@ -470,6 +476,43 @@ void judge_smoothness(struct building *b)
 	statement_guard(judge, b);
 	c->whole_time = false;
 	c->irrationals = used;
+}
+
+static bool reads_state(const struct form *form)
+{
+	bool reads = false;
+	for (int i = 0; i < form->terms; i++) {
+		const struct basis *basis = &form->term[i].basis;
+		reads = reads || basis->kind == BASIS_COORD || (basis->atom && basis->atom->state);
+	}
+	return reads;
+}
+
+struct jump { struct building *b; const struct form *form; const char *where; };
+
+static void find_jump(void *context)
+{
+	struct jump *jump = context;
+	struct spot spot = { 0 };
+	struct search s = new_search(jump->b, &spot);
+	bool sure;
+	find_surfaces(&s, jump->form, NULL);
+	for (int k = 0; k < s.surfaces && !jump->where; k++)
+		if (s.surface[k].abrupt && reads_state(s.surface[k].g) &&
+		    order_on(&s, &s.surface[k], jump->form, &sure) == JUMP && sure)
+			jump->where = surface_text(jump->b->model, s.surface[k].g);
+}
+
+const char *jump_with_state(struct building *b, const struct form *form)
+{
+	struct collector *c = &b->collector;
+	const struct irrationals used = c->irrationals;
+	struct jump jump = { b, form, NULL };
+	c->whole_time = true;
+	silent_guard(find_jump, &jump);
+	c->whole_time = false;
+	c->irrationals = used;
+	return jump.where;
 }
 
 int order_of_scheme(const struct model *model)

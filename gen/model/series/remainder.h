@@ -102,6 +102,7 @@ void split_remainder(struct building *b);                    /* model->split; af
 
 /* model->smooth; says where dry friction stands in the remainder */
 void judge_smoothness(struct building *b);
+const char *jump_with_state(struct building *b, const struct form *form);      /* "x passes 0.5"; NULL: none is sure */
 /* or a coordinate of first order, which is one */
 bool reads_velocity(const struct model *model, const struct form *form);
 _Noreturn void report_friction(const struct node *node, const char *where);
