@@ -27,7 +27,8 @@ void add_child(struct node *node, struct node *child, bool inverse, struct place
 	int inside = child->depth + 1 + (many ? node->children : 0);
 	node->depth = inside > node->depth ? inside : node->depth;
 	if (node->depth > LIMIT_DEPTH)
-		error(child->start, NULL, "operations inside each other, through params and lets, over the limit of %d",
+		error(child->start, NULL,
+		      "operations and names inside each other, through params and lets, over the limit of %d",
 		      LIMIT_DEPTH);
 	node->child[count] = child;
 	node->inverse[count] = inverse;
