@@ -320,7 +320,7 @@ struct table {
 	char *text;                             /* the whole file */
 	size_t length, next;                    /* next: where the line after this one begins */
 	struct place at;                        /* this line */
-	char separator, point;                  /* point: of numbers so far, 0: none had one */
+	char line_end, separator, point;        /* point: of numbers so far, 0: none had one */
 	struct cell *cell;
 	size_t cells, cell_room;
 	char *words;                            /* the cells' texts */

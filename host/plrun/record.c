@@ -56,6 +56,27 @@ static int find_column(const struct table *t, const char *header)
 	return found;
 }
 
+/* "u [N]", as --units names it; another unit than the model's is reported where it stands */
+static int find_with_unit(const struct table *t, const char *name, const char *unit)
+{
+	for (size_t i = 0; i < t->columns; i++) {
+		const char *header = t->header[i].text;
+		char found[64];
+		int end = 0;
+		if (strncmp(header, name, strlen(name)) != 0)
+			continue;
+		sscanf(header + strlen(name), " [%63[^]]]%n", found, &end);
+		if (!end || header[strlen(name) + (size_t)end])
+			continue;
+		if (strcmp(found, unit) != 0)
+			fail_at(header_place(t, i),
+				format("--column '%s=%s' takes its numbers as they are", name, header),
+				format("input '%s' is in '%s', and this column in '%s'", name, unit, found));
+		return (int)i;
+	}
+	return NONE;
+}
+
 static const char *all_headers(const struct table *t)
 {
 	const char *list = "";
@@ -108,10 +129,13 @@ static void take_named(const struct options *o, const struct table *t, struct ch
 static void take_columns(const struct options *o, const struct table *t, struct choice *c)
 {
 	int found = 0;
+	const struct machine *m = c->machine;
 	take_named(o, t, c);
 	for (int i = 0; i < c->names; i++) {
 		if (c->of[i] == NONE)
 			c->of[i] = find_column(t, name_of(c, i));
+		if (c->of[i] == NONE && i < c->inputs && m->units && m->units->input && *m->units->input[i])
+			c->of[i] = find_with_unit(t, name_of(c, i), m->units->input[i]);
 		if (c->of[i] == NONE && i < c->inputs)
 			fail_at(header_place(t, 0), format("--column %s=HEADER says which it is; there are %s",
 							   name_of(c, i), all_headers(t)),

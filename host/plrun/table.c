@@ -27,7 +27,7 @@ static bool next_line(struct table *t)
 {
 	if (t->next >= t->length)
 		return false;
-	const char *line = t->text + t->next, *end = memchr(line, '\n', t->length - t->next);
+	const char *line = t->text + t->next, *end = memchr(line, t->line_end, t->length - t->next);
 	size_t length = end ? (size_t)(end - line) : t->length - t->next;
 	t->next += length + 1;
 	t->at.number++;
@@ -173,6 +173,7 @@ void table_begin(struct table *t, const char *path, char *text, size_t length)
 	*t = (struct table){ .path = path, .at = { .path = strcmp(path, "-") == 0 ? "<stdin>" : path } };
 	t->text = text;
 	t->length = length;
+	t->line_end = memchr(text, '\n', length) ? '\n' : '\r';       /* which alone ends lines of old spreadsheets */
 	if (t->length >= 2 && (memcmp(t->text, "\xFF\xFE", 2) == 0 || memcmp(t->text, "\xFE\xFF", 2) == 0))
 		fail(WRONG_DATA, format("%s is UTF-16: save it as UTF-8", t->at.path));
 	if (t->length >= 3 && memcmp(t->text, "\xEF\xBB\xBF", 3) == 0)

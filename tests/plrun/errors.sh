@@ -218,6 +218,19 @@ record 'a column too many, named' 'road,wind,push\n1,2,3\n' \
 road,wind,push
      ^
 note: the inputs are road, push; with --column or --time other columns are passed over"
+cat >units.spec <<'X'
+model in
+coord x "m"
+input road "m", push "m"
+param T = 1 "s"
+T^2*x'' + x = road + push
+step 0.1
+X
+printf 'push [m],road [mm]\n1,2\n' >units.csv
+refuses 'another unit' 1 "units.csv:1:10: error: input 'road' is in 'm', and this column in 'mm'
+push [m],road [mm]
+         ^
+note: --column 'road=road [mm]' takes its numbers as they are" units.spec --input units.csv
 record 'a column too many' 'push,road\n1,2\n1,2,3\n' 'r.csv:3:5: error: a column too many: the first line has 2
 1,2,3
     ^'

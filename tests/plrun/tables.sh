@@ -73,6 +73,8 @@ written 'quotes' quoted.csv
 	awk '{ printf " %s ,%s\r\n", $2, $3 } NR == 2 { printf "# a pause\r\n" }' numbers
 	printf '\r\n# the end\r\n\r\n') >dos.csv
 written 'byte order mark, CRLF, comments, blanks, empty lines at the end' dos.csv
+tr '\n' '\r' <plain.csv >cr.csv
+written 'CR alone' cr.csv
 (echo 'sep=;'; echo 'road;push'; awk '{ print $2 ";" $3 }' numbers) >sep.csv
 written 'a line that names the separator' sep.csv
 (echo '"CH ""1""",CH2,Zeit,CH7'; awk '{ print $2 "," $2 + 1 "," $1 "," $3 }' numbers) >logger.csv
