@@ -282,10 +282,11 @@ classdef plgen_model < handle
 
         % Rows as steps take them, each input as far ahead as it has to be; what comes before the first step is held.
         function u = record(m, u)
-            if isscalar(m.inputs)
+            if isscalar(m.inputs) && (isvector(u) || isempty(u)) && ! iscell(u)
                 u = u(:);
             end
-            need(columns(u) == numel(m.inputs), sprintf("expected rows of %d numbers, the inputs", numel(m.inputs)));
+            need(isreal(u) && columns(u) == numel(m.inputs), ...
+                sprintf("expected rows of %d numbers, the inputs", numel(m.inputs)));
             need(all(isfinite(u(:))), "the samples are not all finite");
             ahead = m.code.ahead;
             most = max(ahead);

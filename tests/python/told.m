@@ -117,6 +117,10 @@ m = plgen_model("hard.spec");
 refuses("a run that leaves the finite numbers", "hard: t = 0.4: the step has left the finite numbers", @() m.run(100));
 tell("... tells when, and its status", m.status == 1 && numel(m.t) == 4, m.status, m.t);
 refuses("a record too narrow", "expected rows of 2 numbers, the inputs", @() plgen_model("held.spec").run(ones(5, 3)));
+one = plgen_model("model a\ncoord x\ninput u\nx'' + 4*x = u\nstep 0.1\n");
+tell("a record of one input is a row or a column", isequal(one.copy().run(1:3), one.copy().run((1:3)')));
+refuses("a record too wide for one input", "expected rows of 1 numbers, the inputs", @() one.run(ones(2, 2)));
+refuses("a record that is no matrix", "expected rows of 1 numbers, the inputs", @() one.run({1, 2}));
 refuses("a jump where there is none", "plgen_mex: the model has no jump", @() plgen_model("held.spec").jump(3));
 refuses("the Phi of a stop", "stop: not linear, so it has no Phi: it would leave out max(x, 0)", ...
         @() model("stop").Phi);
