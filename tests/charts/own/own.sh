@@ -38,8 +38,10 @@ refused() {
     [ $? -eq 1 ] && grep -qF -e "$text" log
     result $? "refused: $what"
 }
-refused 'what plgen refuses, in its words' "unknown.spec:3:11: error: unknown name 'z'" "$here/unknown.spec" "$work"
-refused 'inputs joined by cubics' 'inputs that are joined by polynomials of higher degree' "$here/third.spec" "$work"
+printf '%s\n' 'model unknown' 'coord x' "x'' + x = z" 'step 0.1' >unknown.spec
+printf '%s\n' 'model third' 'coord x' 'input u hold third' "x'' + x = u" 'step 0.1' >third.spec
+refused 'what plgen refuses, in its words' "unknown.spec:3:11: error: unknown name 'z'" "$PWD/unknown.spec" "$work"
+refused 'inputs joined by cubics' 'inputs that are joined by polynomials of higher degree' "$PWD/third.spec" "$work"
 refused 'what bounces' 'what bounces is not charted' models/bouncing_ball.spec "$work"
 refused 'what sticks' 'has no formula for friction' models/stick_slip.spec "$work"
 refused 'no such file' 'no file nothing.spec' nothing.spec "$work"
