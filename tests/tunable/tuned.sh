@@ -5,7 +5,7 @@
 #     tuned.sh PLGEN REAL CODE.c HEADER.h MODEL.spec ...
 #
 # Each is there as NAME and, with --form direct, as direct_NAME; as plain_NAME and plain_direct_NAME: the same spec
-# without `tunable`; and where its line `#there OPTION ...`, or the file NAME.there beside this script, gives other
+# without `tunable`; and where its line `#there OPTION ...`, or this script, gives other
 # values, with these as there_NAME and there_direct_NAME, again without `tunable`. A line `#always OPTION ...` gives
 # options of all of them.
 set -eu
@@ -68,8 +68,7 @@ for spec; do
 	name=$(basename "$spec" .spec)
 	there=$(sed -n 's/^#there //p' "$spec")
 	always=$(sed -n 's/^#always //p' "$spec")
-	beside=${0%/*}/$name.there
-	[ ! -f "$beside" ] || there=$(cat "$beside")
+	[ "$name" != oscillator ] || there='-D w=12 -D zeta=1/10 --step 1/250'       # of models/
 	grep -v '^tunable' "$spec" >"$work/without.spec"
 	for form in delta direct; do
 		if [ $form = delta ]; then before='' direct=0; else before=direct_ direct=1; fi
