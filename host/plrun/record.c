@@ -25,6 +25,15 @@ static const char *name_of(const struct choice *c, int i)
 	return i < c->inputs ? c->machine->input_names[i] : c->machine->output_names[i - c->inputs];
 }
 
+/* "": none, or the model has no units */
+static const char *unit_of(const struct choice *c, int i)
+{
+	const struct machine *m = c->machine;
+	if (i >= c->inputs)
+		return m->view ? m->view->unit[i - c->inputs] : "";
+	return m->units && m->units->input ? m->units->input[i] : "";
+}
+
 /* "t", "time", "Time [s]", "t/s"; another unit is reported where it stands */
 static bool is_time(const struct table *t, size_t column)
 {
@@ -71,7 +80,7 @@ static int find_with_unit(const struct table *t, const char *name, const char *u
 		if (strcmp(found, unit) != 0)
 			fail_at(header_place(t, i),
 				format("--column '%s=%s' takes its numbers as they are", name, header),
-				format("input '%s' is in '%s', and this column in '%s'", name, unit, found));
+				format("'%s' is in '%s', and this column in '%s'", name, unit, found));
 		return (int)i;
 	}
 	return NONE;
@@ -129,13 +138,12 @@ static void take_named(const struct options *o, const struct table *t, struct ch
 static void take_columns(const struct options *o, const struct table *t, struct choice *c)
 {
 	int found = 0;
-	const struct machine *m = c->machine;
 	take_named(o, t, c);
 	for (int i = 0; i < c->names; i++) {
 		if (c->of[i] == NONE)
 			c->of[i] = find_column(t, name_of(c, i));
-		if (c->of[i] == NONE && i < c->inputs && m->units && m->units->input && *m->units->input[i])
-			c->of[i] = find_with_unit(t, name_of(c, i), m->units->input[i]);
+		if (c->of[i] == NONE && *unit_of(c, i))
+			c->of[i] = find_with_unit(t, name_of(c, i), unit_of(c, i));
 		if (c->of[i] == NONE && i < c->inputs)
 			fail_at(header_place(t, 0), format("--column %s=HEADER says which it is; there are %s",
 							   name_of(c, i), all_headers(t)),

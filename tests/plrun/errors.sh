@@ -227,7 +227,7 @@ T^2*x'' + x = road + push
 step 0.1
 X
 printf 'push [m],road [mm]\n1,2\n' >units.csv
-refuses 'another unit' 1 "units.csv:1:10: error: input 'road' is in 'm', and this column in 'mm'
+refuses 'another unit' 1 "units.csv:1:10: error: 'road' is in 'm', and this column in 'mm'
 push [m],road [mm]
          ^
 note: --column 'road=road [mm]' takes its numbers as they are" units.spec --input units.csv

@@ -125,6 +125,13 @@ result $? 'two records without noise: params, and initial values of each, within
 run ring.spec 0.5 >own.csv && run ring.spec --fit k,c,x own.csv >table && ! grep -i nan table >log
 result $? 'a record that the model itself has made: errors of 0, and correlations as of any other'
 
+sed '/^output/s/x,/x "mm",/; /^coord/s/$/ "m"/' ring.spec >units.spec
+run units.spec 0.5 --units -D k=50 >own.csv && sed '1s/ \[[^]]*\]//g' own.csv >plain.csv
+run units.spec --fit k,c own.csv >found && run units.spec --fit k,c plain.csv >expected
+grep -q '^t,x \[mm\]' own.csv && cmp found expected >log 2>&1 &&
+	awk -F, '$1 == "k" { off = $2 / 50 - 1; n++ } END { print off; exit !(n == 1 && off^2 < 1e-24) }' found >>log
+result $? 'a record whose columns have units, as --units writes it'
+
 # Through seven impacts, of which each moves with every param; and a model that is retuned
 cat >struck.spec <<'X'
 model struck
