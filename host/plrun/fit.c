@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Values of params and initial states by which the outputs come closest to records: Gauss and Newton's method with
- * Levenberg's damping (GSL), on the derivatives that the model computes beside its steps. A run gives the residuals
- * and their derivatives, so each set of values that is tried costs one run, or one for each record.
+/* Values of params and initial states for a fit, and by how much the outputs miss the records there: residuals
+ * and their derivatives, which the model computes beside its steps. A run gives both, so each set of values that is
+ * tried costs one run, or one for each record.
  *
  * Where every param that is looked for is tunable, and runs from other values have the derivatives of these, nothing is
  * compiled anew; else the model is, once for each set of values. An initial value is set in the run. A sample between
@@ -392,19 +392,21 @@ void fit_each(const struct estimate *e, fit_watch *each, void *who)
 
 /* ---- all of it ---- */
 
-static struct estimate estimate_new(struct fit *f)
+struct fit *fit_new(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+		    const double *params)
 {
-	const size_t unknowns = (size_t)f->unknowns;
-	struct estimate e = { .fit = f, .value = need(calloc(unknowns, sizeof(double))),
-			      .held = need(calloc(unknowns, sizeof(bool))), .at.unknowns = f->unknowns };
-	e.at.residual = need(calloc(f->samples + 1, sizeof(double)));
-	e.at.jacobian = need(calloc(f->samples * unknowns + 1, sizeof(double)));
-	for (int i = 0; i < f->unknowns; i++)
-		e.value[i] = f->unknown[i].start;
-	return e;
+	struct fit *f = need(malloc(sizeof *f));
+	*f = (struct fit){ .tools = t, .options = o, .code = c, .machine = m, .params = params };
+	gsl_set_error_handler_off();
+	read_records(f);
+	find_sigmas(f);
+	find_unknowns(f);
+	if (f->samples <= (size_t)f->unknowns)
+		fail(WRONG_DATA, format("%zu samples up to T, and %d values are looked for", f->samples, f->unknowns));
+	return f;
 }
 
-static void say_cost(const struct fit *f)
+void fit_say_cost(const struct fit *f)
 {
 	const char *wanted = "";
 	for (int i = 0; i < f->unknowns; i++)
@@ -414,36 +416,4 @@ static void say_cost(const struct fit *f)
 	const char *way_out = f->machine->crossed ? "" : format("; `tunable %s` spares that", wanted);
 	say_note(format("%zu evaluations%s%s", f->evaluations, f->compiled ? ", the model compiled for each" : "",
 			f->compiled ? way_out : ""));
-}
-
-/* Held: what has come to an end of its range, while less than that is left over beyond */
-static void hold_ends(struct estimate *e)
-{
-	for (int i = 0; i < e->fit->unknowns; i++) {
-		const struct unknown *u = &e->fit->unknown[i];
-		e->held[i] = e->value[i] <= u->low || e->value[i] >= u->high;
-		if (e->held[i])
-			say_note(format("%s has come to the end of its range, %s: it has no interval there", u->name,
-					shortest(e->value[i], false)));
-	}
-}
-
-int fit_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
-	    const double *params, FILE *to)
-{
-	struct fit f = { .tools = t, .options = o, .code = c, .machine = m, .params = params };
-	gsl_set_error_handler_off();
-	read_records(&f);
-	find_sigmas(&f);
-	find_unknowns(&f);
-	if (f.samples <= (size_t)f.unknowns)
-		fail(WRONG_DATA, format("%zu samples up to T, and %d values are looked for", f.samples, f.unknowns));
-	struct estimate e = estimate_new(&f);
-	fit_solve(&e);
-	say_cost(&f);
-	hold_ends(&e);
-	fitted_print(&e, o, to);
-	if (o->plot)
-		fitted_draw(&e, o, m->name);
-	return 0;
 }

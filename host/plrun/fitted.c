@@ -195,7 +195,8 @@ static bool turns_back(const struct attempt *a)
 	return turns;
 }
 
-void fit_solve(struct estimate *e)
+/* The best values of all that is not held, from e->value on */
+static void solve(struct estimate *e)
 {
 	enum { MOST_RETURNS = 5 };
 	struct attempt a = { .f = e->fit, .e = e, .samples = fit_samples(e->fit) };
@@ -394,7 +395,7 @@ static void print_profile(const struct estimate *best, const struct found *s, in
 		e.value[i] = moved < u->low ? u->low : moved > u->high ? u->high : moved;
 		e.held[i] = true;
 		if (k)
-			fit_solve(&e);
+			solve(&e);
 		value[k + PROFILE] = e.value[i];
 		root[k + PROFILE] = root_of_rise(best, s, &e, k < 0 ? -1 : 1);
 		print_point(s, i, &e, root[k + PROFILE], to);
@@ -437,7 +438,7 @@ static void say_residual(void *who, const char *output, size_t record, size_t ro
 				sqrt(squares / count)));
 }
 
-void fitted_print(const struct estimate *e, const struct options *o, FILE *to)
+static void print_fit(const struct estimate *e, const struct options *o, FILE *to)
 {
 	const struct found s = judge(e);
 	bool several = o->fit_records > 1;
@@ -482,9 +483,53 @@ static void draw_output(void *who, const char *output, size_t record, size_t row
 	script_curve(to, 0, format("$data%d using 1:4", number), NULL, 0);
 }
 
-void fitted_draw(const struct estimate *e, const struct options *o, const char *name)
+static void draw_fit(const struct estimate *e, const struct options *o, const char *name)
 {
 	struct drawing d = { .script = script_new(&o->look, o->plot_file, name, NULL) };
 	fit_each(e, draw_output, &d);
 	script_draw(d.script);
+}
+
+/* ---- all of it ---- */
+
+static struct estimate estimate_new(struct fit *f)
+{
+	const struct unknown *unknown;
+	const int unknowns = fit_unknowns(f, &unknown);
+	const size_t count = (size_t)unknowns, samples = fit_samples(f);
+	struct estimate e = { .fit = f, .value = need(calloc(count, sizeof(double))),
+			      .held = need(calloc(count, sizeof(bool))), .at.unknowns = unknowns };
+	e.at.residual = need(calloc(samples + 1, sizeof(double)));
+	e.at.jacobian = need(calloc(samples * count + 1, sizeof(double)));
+	for (int i = 0; i < unknowns; i++)
+		e.value[i] = unknown[i].start;
+	return e;
+}
+
+/* Held: what has come to an end of its range, while less than that is left over beyond */
+static void hold_ends(struct estimate *e)
+{
+	const struct unknown *unknown;
+	const int unknowns = fit_unknowns(e->fit, &unknown);
+	for (int i = 0; i < unknowns; i++) {
+		const struct unknown *u = &unknown[i];
+		e->held[i] = e->value[i] <= u->low || e->value[i] >= u->high;
+		if (e->held[i])
+			say_note(format("%s has come to the end of its range, %s: it has no interval there", u->name,
+					shortest(e->value[i], false)));
+	}
+}
+
+int fit_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+	    const double *params, FILE *to)
+{
+	struct fit *f = fit_new(t, o, c, m, params);
+	struct estimate e = estimate_new(f);
+	solve(&e);
+	fit_say_cost(f);
+	hold_ends(&e);
+	print_fit(&e, o, to);
+	if (o->plot)
+		draw_fit(&e, o, m->name);
+	return 0;
 }

@@ -38,8 +38,8 @@
  *     variants.c  the models that these take
  *     journal.c   the lines that are done, kept beside, from which an interrupted sweep goes on
  *     workers.c   the lines shared out to cores (OpenMP) and machines (MPI)
- *     fit.c       values of params, so that outputs come closest to what was measured (GSL)
- *     fitted.c    what a fit has found: values, intervals, correlations, profiles, a picture
+ *     fit.c       params to look for, records, and by how much outputs miss them at some values
+ *     fitted.c    the values that come closest (GSL): intervals, correlations, profiles, a picture
  *     chart.c     error against time, with other solvers; a page that runs the model
  *
  * A param that the spec declares tunable changes without compiling (`retune`); any other is given to plgen as -D, and
@@ -489,18 +489,18 @@ struct estimate {
 };
 int fit_run(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
 	    const double *params, FILE *to);  /* exit status */
+/* With its records read; what it cannot look for is an error */
+struct fit *fit_new(const struct toolchain *t, const struct options *o, const struct code *c, const struct machine *m,
+		    const double *params);
+void fit_say_cost(const struct fit *f);         /* evaluations, and whether each compiled the model */
 int fit_unknowns(const struct fit *f, const struct unknown **unknown);
 size_t fit_samples(const struct fit *f);
 double unknown_clamped(const struct unknown *u, double value);  /* in its range */
-/* The best values of all that is not held, from e->value on */
-void fit_solve(struct estimate *e);
 /* Calls with the name of each output that was measured, the record's number, and rows of t, value and model */
 typedef void fit_watch(void *who, const char *output, size_t record, size_t rows, const double *row);
 /* Residuals at these values; returns how a run has failed, or NULL. each: NULL for none */
 const char *fit_evaluate(struct fit *f, const double *value, struct fit_rows *to, fit_watch *each, void *who);
 void fit_each(const struct estimate *e, fit_watch *each, void *who);
-void fitted_print(const struct estimate *e, const struct options *o, FILE *to);
-void fitted_draw(const struct estimate *e, const struct options *o, const char *name);
 
 /* ---- chart.c ---- */
 
