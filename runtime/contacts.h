@@ -589,7 +589,7 @@ static void come_to_rest(const contacts *m, instant *at, uint32_t acted)
             resolve(m, at, 0);
         }
     }
-    set = acted != 0 ? near_rest(m, at) : 0;
+    set = acted != 0 && m->impacts > 1 ? near_rest(m, at) : 0; /* of one alone it says nothing */
     if (set != 0) {
         rest_together(m, at, set);
     }

@@ -385,14 +385,34 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
 #define PL_FEW_REGIONS 0
 #define PL_SUM(row, x) sum_of(m->size, row, x)
 #define PL_EACH
+#define PL_MEETS 1
+#define PL_ENTRIES
+#define PL_MOST_SIZE 8
+#define PL_MOST_TERMS 17
+#define PL_DOT(row, x) sum_of(m->size, row, x)
+#define PL_ACTS(i, j) 1
 #include "unmet.h"
+
+int pl_guards_meet(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
+                   double *work)
+{
+    instant at = instant_of(m, x, c, crossing, work);
+    event met = no_event;
+    met.guard = guard;
+    c->crossings = 0;
+    keep(m, &at);
+    return pass(m, &at, &met, time) == GO_ON;
+}
 
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
 {
     double *const size = work + m->size;
     int i;
     if (tau < m->h || !unmet_keeps_all(m, c->region, x, work, size, size + m->size)) {
-        pl_guards_advance(m, tau, x, c, crossing, work);
+        if (tau < m->h || m->size > PL_MOST_SIZE || m->degree >= PL_MOST_TERMS ||
+            !unmet_meets_one(m, x, c, crossing, work)) {
+            pl_guards_advance(m, tau, x, c, crossing, work);
+        }
         return;
     }
     for (i = 0; i < m->size; i++) {

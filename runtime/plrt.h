@@ -486,6 +486,11 @@ typedef struct pl_units {
  * the last place of |guards.row| + 3 |guards.tangent|, to cover rounding at the start of the step. */
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work);
 
+/* What happens where the first guard of a step is met, at x, of matrices that are there: x behind it.  0: the step has
+ * more of it than this. work: that of pl_guards_advance. */
+int pl_guards_meet(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
+                   double *work);
+
 /* Sets no lead: w has been the same since t = 0. */
 static inline void pl_lead_start(pl_lead *lead)
 {

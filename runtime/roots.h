@@ -22,7 +22,7 @@
 
 static real magnitude(real a)
 {
-    return a < 0 ? -a : a;
+    return pl_magnitude(a);
 }
 
 static real larger(real a, real b)
@@ -81,6 +81,22 @@ static real noise_of(real terms)
     return 8 * REAL_EPSILON * terms;
 }
 
+/* next = A y and |A| terms, in the entries that `row` reads, or in the others */
+static inline void turn_entries(int n, const real *A, const real *row, int others, const real *y, const real *terms,
+                                real *next, real *next_terms)
+{
+    int i;
+    for (i = 0; i < n; i++) {
+        const int is_read = row[i] < 0 || row[i] > 0;
+        if (is_read != others) {
+            next[i] = dot_product(n, A + i * n, y);
+            next_terms[i] = sizes(n, A + i * n, terms);
+        } else if (!others) {
+            next[i] = next_terms[i] = 0;
+        }
+    }
+}
+
 /* 1, -1 or 0: the sign of the first of e', e'', e''' that is not zero but for rounding.  work: 4 n */
 static inline int heading(int n, const real *A, const real *row, const real *x, real *work)
 {
@@ -90,18 +106,16 @@ static inline int heading(int n, const real *A, const real *row, const real *x, 
         y[i] = terms[i] = x[i];
     }
     for (order = 1; order <= 3; order++) {
-        pl_multiply(n, n, A, y, next);
-        for (i = 0; i < n; i++) {
-            next_terms[i] = sizes(n, A + i * n, terms);
+        turn_entries(n, A, row, 0, y, terms, next, next_terms);
+        e = dot_product(n, row, next);
+        noise = noise_of(sizes(n, row, next_terms));
+        if (e > noise || e < -noise) {
+            return e > 0 ? 1 : -1;
         }
+        turn_entries(n, A, row, 1, y, terms, next, next_terms);
         for (i = 0; i < n; i++) {
             y[i] = next[i];
             terms[i] = next_terms[i];
-        }
-        pl_multiply(1, n, row, y, &e);
-        noise = noise_of(sizes(n, row, terms));
-        if (e > noise || e < -noise) {
-            return e > 0 ? 1 : -1;
         }
     }
     return 0;

@@ -195,6 +195,29 @@ static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VEC
 }
 #endif
 
+#if PL_EVENT_FREE && PL_GUARDS
+/* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
+#define PL_FEW_REGIONS (PL_REGIONS <= 16 && PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
+
+/* row . x in the order of the runtime's sums: of each fourth term, then these */
+static PL_INLINE double PL(dot)(const double *row, const double *x)
+{
+    double s[4] = {-0.0, -0.0, -0.0, -0.0};
+    int j;
+    PL_UNROLL
+    for (j = 0; j < PL_SIZE; j++) {
+        s[j % 4] += row[j] * x[j];
+    }
+    return (s[0] + s[2]) + (s[1] + s[3]);
+}
+#if !PL_FEW_REGIONS
+#define PL_SUM(row, x) PL(dot)(row, x)
+#define PL_EACH
+#endif
+#define PL_MEETS (!PL_OWN && PL_SEGMENTS < 2 && !PL_SLOTS && !PL_COLUMNS_D && PL_SIZE < 9 && PL_DEGREE < 17)
+#include "unmet.h"
+#endif
+
 #if PL_SEGMENTS > 1
 
 /* The same intervals after the next change; where they cannot be then, the equations of the region where x is */
@@ -292,9 +315,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
     }
     contact->crossings = count;
 }
-
 #else
-
 /* x on by tau */
 static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
                             pl_crossing *crossing PL_AND_VARIATION)
@@ -309,6 +330,11 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #if PL_EVENT_FREE && PL_GUARDS && !(PL_COLUMNS_D > 0)
     if (PL_SOFT) {
         pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
+        return;
+    }
+#endif
+#if PL_MEETS
+    if (tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
         return;
     }
 #endif
@@ -350,26 +376,6 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 #endif
 
 #if PL_EVENT_FREE && PL_GUARDS
-/* Of few regions each has code of its own, in which its tables are numbers and what is 0 in them is left out. */
-#define PL_FEW_REGIONS (PL_REGIONS <= 16 && PL_REGIONS * PL_SIZE <= 64 && PL_SIZE <= 16)
-
-#if !PL_FEW_REGIONS
-/* row . x in the order of the runtime's sums: of each fourth term, then these */
-static PL_INLINE double PL(sum)(const double *row, const double *x)
-{
-    double s[4] = {-0.0, -0.0, -0.0, -0.0};
-    int j;
-    PL_UNROLL
-    for (j = 0; j < PL_SIZE; j++) {
-        s[j % 4] += row[j] * x[j];
-    }
-    return (s[0] + s[2]) + (s[1] + s[3]);
-}
-#define PL_SUM(row, x) PL(sum)(row, x)
-#define PL_EACH
-#endif
-#include "unmet.h"
-
 /* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
  * through memory; and one by one, as two in one store would have to be put together first. */
 static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])

@@ -37,6 +37,12 @@
 #undef PL_CACHED
 #undef PL_FUNCTION_BOUNDS
 #undef PL_LISTS
+#undef PL_ACTS
+#undef PL_DOT
+#undef PL_ENTRIES
+#undef PL_MEETS
+#undef PL_MOST_SIZE
+#undef PL_MOST_TERMS
 #undef PL_MOST_GUARDS
 #undef PL_MOST_HOLDS
 #undef PL_KEPT
