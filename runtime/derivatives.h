@@ -16,6 +16,7 @@
  *                                PL(columns)(s, ds, x, S) sets x and what of it varies, but for the states;
  *                                PL(out_first), PL(out_varied): the entries of the rows' derivatives.  0: PL(out_d) is
  *                                there already
+ *     PL_BY_SLOPES               1: some outputs are no rows: PL(out_by_slopes)(s, ds, J) adds theirs
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
@@ -139,6 +140,9 @@ void PL(out_d)(
             J[PL(out_varied)[j].row][p] += PL(out_varied)[j].value * x[PL(out_varied)[j].column];
         }
     }
+#if PL_BY_SLOPES
+    PL(out_by_slopes)(s, ds, J);
+#endif
 }
 #endif
 

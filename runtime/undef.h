@@ -20,6 +20,7 @@
 #undef PL_DECLARED
 #undef PL_BESIDE
 #undef PL_SHARED
+#undef PL_RATED
 #undef PL_STRIDE
 #undef PL_TUNED
 #undef PL_BOTH
@@ -92,6 +93,7 @@
 #undef PL_DERIVATIVES
 #undef PL_DIRECT
 #undef PL_OUT_SIZE
+#undef PL_BY_SLOPES
 #undef PL_OPENCL
 #undef PL_CUDA
 #undef PL_GLOBAL

@@ -95,7 +95,17 @@ static tape_ref highest_derivative(const struct emitter *e, struct tape *t, int 
 					      : tape_of_row(t, e->step, e->model->equations.highest[k]);
 }
 
-/* Their values; first the highest derivatives that they read, as locals */
+/* As locals */
+static void set_highest(const struct emitter *e, struct tape *t, int forms, const struct form *const *form)
+{
+	const struct reads r = reads_of(written_model(e->model), forms, form);
+	for (int k = 0; k < written_model(e->model)->n + e->model->spec->count.multipliers; k++)
+		if (r.highest[k])
+			tape_set_local(t, format("accel%d", k + 1),
+				       highest_derivative(e, t, k));
+}
+
+/* Their values; first the highest derivatives that they read */
 static struct formulas *formulas_of_outputs(const struct emitter *e)
 {
 	const struct model *model = e->model;
@@ -112,11 +122,7 @@ static struct formulas *formulas_of_outputs(const struct emitter *e)
 		if (is_wanted(e, i))
 			value[i] = output->left ? formula(f, output->left) : tape_of_row(t, e->step, output);
 	}
-	const struct reads r = reads_of(written_model(model), forms, form);
-	for (int k = 0; k < written_model(model)->n + model->spec->count.multipliers; k++)
-		if (r.highest[k])
-			tape_set_local(t, format("accel%d", k + 1),
-				       highest_derivative(e, t, k));
+	set_highest(e, t, forms, form);
 	for (int i = 0; i < model->outputs; i++)
 		if (is_wanted(e, i))
 			tape_set(t, e->at ? e->at->output[i] : format("out[%d]", i), value[i], 13,
@@ -137,10 +143,9 @@ static void emit_input_locals(const struct emitter *e, const bool *wanted)
 	}
 }
 
-static void emit_some_outputs(const struct emitter *e)
+static void emit_read_formulas(const struct emitter *e, struct formulas *f)
 {
 	const struct model *model = e->model;
-	struct formulas *f = formulas_of_outputs(e);
 	const struct reads r = reads_of_formulas(f);
 	const bool *reads = kept_states(e, f), remainder = tape_reads(formulas_tape(f), TAPE_TABLE, -1, TABLE_LEFT);
 	emit_locals(e, reads);
@@ -159,6 +164,11 @@ static void emit_some_outputs(const struct emitter *e)
 		say(e, "    double motion[%d];\n"
 		       "    $n_motion_now(s, motion);\n", motion_numbers(e));
 	emit_formulas(f, 4);
+}
+
+static void emit_some_outputs(const struct emitter *e)
+{
+	emit_read_formulas(e, formulas_of_outputs(e));
 }
 
 /* Of a state that was set the intervals are not known yet. */
@@ -194,6 +204,33 @@ void emit_outputs_now(const struct emitter *e)
 	say(e, "    {\n");
 	emit_some_outputs(&drawn);
 	say(e, "    }\n");
+}
+
+int slopes_of_outputs(const struct model *model)
+{
+	int slopes = 0;
+	for (int o = 0; o < model->outputs; o++)
+		slopes += model->output[o].slopes;
+	return slopes;
+}
+
+void emit_output_slopes(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	const struct form **form = ARRAY(const struct form *, (size_t)slopes_of_outputs(model));
+	tape_ref *value = ARRAY(tape_ref, (size_t)slopes_of_outputs(model));
+	int forms = 0;
+	for (int o = 0; o < model->outputs; o++)
+		for (int k = 0; k < model->output[o].slopes; k++)
+			form[forms++] = model->output[o].slope[k].form;
+	struct formulas *f = formulas_new(e, (struct reading){ 0 }, forms, form);
+	for (int k = 0; k < forms; k++)
+		value[k] = formula(f, form[k]);
+	set_highest(e, formulas_tape(f), forms, form);
+	for (int k = 0; k < forms; k++)
+		tape_set(formulas_tape(f), format("slope[%d]", k), value[k], 13, NULL);
+	formulas_finish(f);
+	emit_read_formulas(e, f);
 }
 
 void emit_out(const struct emitter *e)

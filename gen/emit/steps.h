@@ -60,6 +60,8 @@ void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
 
 void emit_out(const struct emitter *e);
+int  slopes_of_outputs(const struct model *model);
+void emit_output_slopes(const struct emitter *e);                 /* into slope[], of all in order */
 void emit_outputs_now(const struct emitter *e);                   /* into out, or where they stand */
 /* ---- emit_derivatives.c: derivatives beside the states ---- */
 

@@ -58,14 +58,20 @@ static const struct output *bent_output(const struct model *model)
 	return NULL;
 }
 
-/* One whose row the region changes: it reads an acceleration, or is not linear */
-static const struct output *regional_output(const struct model *model)
+/* One that reads what friction bears, which no slope has */
+static const struct output *felt_output(const struct model *model)
 {
-	for (int i = 0; i < model->outputs; i++)
-		for (int k = 0; k < model->remainder.force_columns; k++)
-			if (model->output[i].force_column && mpq_sgn(model->output[i].force_column[k]) != 0)
+	for (int i = 0; i < model->outputs; i++) {
+		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));
+		const struct form *left = model->output[i].left;
+		if (model->output[i].reads_slider_force && model->output[i].slopes)
+			return &model->output[i];
+		for (const struct form_term **term = left ? terms_within(left, seen) : NULL; term && *term; term++)
+			if ((*term)->basis.atom && (*term)->basis.atom->kind == ATOM_CALL &&
+			    (*term)->basis.atom->function >= FN_FRICTION)
 				return &model->output[i];
-	return bent_output(model);
+	}
+	return NULL;
 }
 
 bool has_peak(const struct model *model)

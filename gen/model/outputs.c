@@ -378,7 +378,86 @@ struct output *row_of_highest(struct building *b, const struct linear *system, i
 	return row_in_system(b, system, form_unit(basis));
 }
 
+/* ---- slopes of outputs that are no rows in all regions, for their derivatives ---- */
+
+static bool reads_highest(const struct building *b, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	bool any = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++)
+		any = any || is_highest(&b->model->frame, &(*term)->basis);
+	return any;
+}
+
+static bool has_slopes(const struct building *b, const struct output *output)
+{
+	const struct model *model = b->model;
+	if (b->spec->sensitivities == 0 || b->request->again.derivatives > 0 || !output->value)
+		return false;
+	if (!model->switching)
+		return output->left && model->system.segments > 1 && model->remainder.force_columns == 0 &&
+		       b->spec->tuned.count == 0;
+	return output->left || reads_highest(b, output->form);
+}
+
+static void add_slope(struct building *b, struct output *output, struct basis along, const struct form *form)
+{
+	if (form->terms == 0)
+		return;
+	place_loads_within(b, form);
+	*MORE(output->slope, output->slopes) = (struct output_slope){ along, form };
+}
+
+static void add_slope_along(struct building *b, struct output *output, struct basis along)
+{
+	const struct form *form = output->left ? output->left : output->form;
+	struct collector *c = &b->collector;
+	const int keep = (int)c->keep;
+	c->keep = KEEP_ALL;
+	c->whole_time = c->output = c->reading = true;
+	add_slope(b, output, along, *form_derivatives(c, 1, &form, along.kind == BASIS_INPUT, along.index, along.order));
+	c->keep = (unsigned)keep;
+	c->whole_time = c->output = c->reading = false;
+}
+
+struct slope_work {
+	struct building *b;
+	struct output *output;
+};
+
+static void find_slopes(void *context)
+{
+	const struct slope_work *work = context;
+	struct building *b = work->b;
+	struct output *output = work->output;
+	for (int k = 0; k < b->model->n; k++)
+		for (int order = 0; order <= b->model->frame.coord[k]->highest; order++)
+			add_slope_along(b, output, (struct basis){ .kind = BASIS_COORD, .index = k, .order = order });
+	for (int i = 0; i < b->spec->count.inputs; i++)
+		for (int order = 0; order <= (b->model->system.input[i].hold > 0); order++)
+			add_slope_along(b, output, (struct basis){ .kind = BASIS_INPUT, .index = i, .order = order });
+	for (int p = 0; p < b->spec->sensitivities; p++) {
+		struct output_work by = { b, slope_by_param(b->spec, &b->spec->sensitivity[p], output->value), NULL };
+		if (is_zero_node(by.node))
+			continue;
+		collect_left(&by);
+		const int cell = by.value->rows * by.value->columns > 1 ? output->cell : 0;
+		add_slope(b, output, (struct basis){ .kind = BASIS_ONE, .index = p }, by.value->cell[cell]);
+	}
+}
+
 /* ---- outputs that are not linear ---- */
+
+static struct reads reads_of_output(const struct model *model, const struct output *output)
+{
+	const struct form **form = ARRAY(const struct form *, (size_t)output->slopes + 1);
+	int forms = 0;
+	if (output->left)
+		form[forms++] = output->left;
+	for (int k = 0; k < output->slopes; k++)
+		form[forms++] = output->slope[k].form;
+	return reads_of(model, forms, form);
+}
 
 /* The highest derivatives that they read, each as a row of its own */
 static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t *highest)
@@ -387,8 +466,7 @@ static void build_highest(struct building *b, const mpq_t *inverse, const mpq_t 
 	RATIONAL one = RATIO(1, 1);
 	model->equations.highest = ARRAY(struct output *, model->n);
 	for (int i = 0; i < model->outputs; i++) {
-		const struct form *left = model->output[i].left;
-		struct reads reads = reads_of(model, left != NULL, &left);
+		const struct reads reads = reads_of_output(model, &model->output[i]);
 		for (int k = 0; k < model->n && !gives_motion(model); k++) {    /* beside a series that has them */
 			if (!reads.highest[k] || model->equations.highest[k])
 				continue;
@@ -451,6 +529,9 @@ void build_outputs(struct building *b)
 			place_loads(b, output_form(b, &model->output[i], s));
 	for (int i = 0; i < model->outputs; i++)
 		place_loads_within(b, model->output[i].left);
+	for (int i = 0; i < model->outputs && !diagnostics_errors(); i++)
+		if (has_slopes(b, &model->output[i]))
+			statement_guard(find_slopes, &(struct slope_work){ b, &model->output[i] });
 	for (int i = 0; i < model->outputs; i++) {
 		struct output *output = &model->output[i];
 		if (output->statement != reported && !check_output(model, output))
@@ -460,6 +541,8 @@ void build_outputs(struct building *b)
 			see_state(model, i, output->state);
 		else if (output->form && !diagnostics_errors())
 			spread_output(b, inverse, highest, output);
+		if (!output->left && rationals_zero((size_t)model->remainder.force_columns, output->force_column))
+			output->slopes = 0;             /* a row that no region changes */
 	}
 	if (!diagnostics_errors())
 		build_highest(b, inverse, highest);

@@ -94,8 +94,8 @@ static void emit_clear_step(const struct emitter *e)
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
 }
 
-/* ds over tau, from s */
-static void emit_varied_step(const struct emitter *e)
+/* Its loads now */
+static void emit_loads_of_step(const struct emitter *e)
 {
 	const struct layout *layout = &e->step->layout;
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
@@ -104,13 +104,20 @@ static void emit_varied_step(const struct emitter *e)
 	loads.at = at.since ? &at : e->at;
 	for (int l = 0; l < e->system->loads; l++)
 		needed[l] = layout->load[l] >= 0;
+	emit_load_states(&loads, needed, true);
+}
+
+/* ds over tau, from s */
+static void emit_varied_step(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
 	open_function(e, NULL, "static void $o_vary_by(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
 	say(e, "    pl_contact contact = %s;\n"
 	       "    const double t = $n_time(s);\n"
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
 	declare_varied_params(e);
 	declare_region_vector(e);
-	emit_load_states(&loads, needed, true);
+	emit_loads_of_step(e);
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
 		say(e, "    $n_get(s, x);\n");
@@ -189,16 +196,33 @@ static void emit_output_rows(const struct emitter *e, const struct layout *x)
 			row_of_output(x, &model->system, &model->output[o], segments, k, row);
 			name[o] = model->output[o].name;
 			for (int j = 0; j < x->size; j++)
-				to[j] = finite_number(e, row[j]);
+				to[j] = model->output[o].slopes ? 0 : finite_number(e, row[j]);
 		}
 	emit_array(e, "Outputs as rows over states, loads and inputs, in each segment of time", "out_row", 3, size,
 		   value, name);
 }
 
+/* Of S what is of loads and inputs now; x: where each stands */
+static void emit_acting_now(const struct emitter *e, const struct layout *x)
+{
+	const struct derivatives *d = e->step->shown->derivatives;
+	emit_params_now(e);
+	for (int p = 0; p < d->columns; p++) {
+		emit_varied_tunables(e, p, x);
+		for (int l = 0; l < e->system->loads; l++)
+			if (x->load[l] >= 0)
+				emit_varied_load(e, p, l, x->load[l]);
+		for (int i = 0; i < e->system->inputs && d->column[p].symbol->kind == SYMBOL_INPUT; i++)
+			for (int k = 0; k <= e->system->input[i].hold; k++)
+				if (place_of_input(e, i) == d->column[p].symbol->index)
+					say(e, "    S[%d][%d] = ds->%s[%d];\n", p, x->input[i] + k, k ? "slope" : "du",
+					    d->column[p].symbol->index);
+	}
+}
+
 /* x and what it varies by, now */
 static void emit_columns_now(const struct emitter *e, const struct layout *x)
 {
-	const struct derivatives *d = e->step->derivatives;
 	bool *needed = ARRAY(bool, (size_t)e->system->loads);
 	open_function(e, NULL, "static void $n_columns(const $n *s, const $n_d *ds, double x[%d], double S[$N_D][%d])",
 		      x->size, x->size);
@@ -217,17 +241,93 @@ static void emit_columns_now(const struct emitter *e, const struct layout *x)
 		for (int k = 0; k <= e->system->input[i].hold; k++)
 			say(e, "    x[%d] = %s;\n", x->input[i] + k,
 			    k ? format("s->slope[%d]", place_of_input(e, i)) : sample_kept(e, i));
-	emit_params_now(e);
-	for (int p = 0; p < d->columns; p++) {
-		emit_varied_tunables(e, p, x);
-		for (int l = 0; l < e->system->loads; l++)
-			if (needed[l])
-				emit_varied_load(e, p, l, x->load[l]);
-		for (int i = 0; i < e->system->inputs && d->column[p].symbol->kind == SYMBOL_INPUT; i++)
-			for (int k = 0; k <= e->system->input[i].hold && i == d->column[p].symbol->index; k++)
-				say(e, "    S[%d][%d] = ds->%s[%d];\n", p, x->input[i] + k, k ? "slope" : "du", i);
-	}
+	emit_acting_now(e, x);
 	close_function(e, "t ds S");
+}
+
+/* How the states of a part go on varying, now */
+static void emit_rates(const struct emitter *e)
+{
+	const struct layout *layout = &e->step->layout;
+	open_function(e, NULL, "static void $o_rates_now(const $n *s, const $n_d *ds, double rate[$N_D][$N_STATES])");
+	say(e, "    const pl_contact contact = %s;\n"
+	       "    const double t = $n_time(s);\n"
+	       "    double S[$N_D][%d] = {{0.0}};\n", start_of_search(e), layout->size);
+	declare_varied_params(e);
+	declare_region_vector(e);
+	emit_loads_of_step(e);
+	emit_region_vector(e, false);
+	emit_acting_now(e, layout);
+	say(e, "    $o_rates(s, contact.matrix, x, S, ds, rate);\n");
+	close_function(e, "t");
+}
+
+static void emit_rates_call(const struct emitter *part)
+{
+	say(part, "    $o_rates_now(s, ds, rate);\n");
+}
+
+static void each_stepped(const struct emitter *e, void (*emit)(const struct emitter *part))
+{
+	const struct emitter changes = e->step->derivatives->regions ? emitter_of_changes(e) : *e;
+	if (e->step->derivatives->regions)
+		emit(&changes);
+	else
+		each_part(e, emit);
+}
+
+/* What a slope is times, of column p; NULL: it is of one column alone */
+static const char *varied_along(const struct emitter *e, const struct basis *along)
+{
+	if (along->kind != BASIS_COORD)
+		return NULL;
+	const bool highest = is_highest(&e->model->frame, along);
+	const int *velocity = e->system->velocity, own = along->index;
+	if (highest)
+		return format("rate[p][%d]", along->order > 1 ? velocity[own] : own);
+	return format("ds->s[p][%d]", along->order ? velocity[own] : own);
+}
+
+static void emit_slope_in_column(const struct emitter *e, int output, int number, const struct basis *along)
+{
+	const struct derivatives *d = e->step->derivatives;
+	if (along->kind == BASIS_ONE)
+		say(e, "    J[%d][%d] += slope[%d];\n", output, along->index, number);
+	for (int p = 0; p < d->columns && along->kind == BASIS_INPUT; p++)
+		if (d->column[p].symbol->kind == SYMBOL_INPUT && d->column[p].symbol->index == along->index)
+			say(e, "    J[%d][%d] += slope[%d] * ds->%s[%d];\n", output, p, number,
+			    along->order ? "slope" : "du", along->index);
+}
+
+/* J of outputs that are no rows in all regions: their slopes times what each is along */
+static void emit_outputs_by_slopes(const struct emitter *e)
+{
+	const struct model *model = e->model;
+	const bool rated = reads_rates(model);
+	if (rated)
+		each_stepped(e, emit_rates);
+	open_function(e, NULL, "static void $n_out_by_slopes(const $n *s, const $n_d *ds, "
+		      "double J[$N_OUTPUTS][$N_D])");
+	say(e, "    double slope[%d];\n"
+	       "%s"
+	       "    int p;\n"
+	       "    {\n", slopes_of_outputs(model), rated ? spell(e, "    double rate[$N_D][$N_STATES];\n") : "");
+	emit_output_slopes(e);
+	say(e, "    }\n");
+	if (rated)
+		each_stepped(e, emit_rates_call);
+	say(e, "    for (p = 0; p < $N_D; p++) {\n");
+	for (int o = 0, number = 0; o < model->outputs; o++)
+		for (int k = 0; k < model->output[o].slopes; k++, number++) {
+			const char *varied = varied_along(e, &model->output[o].slope[k].along);
+			if (varied)
+				say(e, "        J[%d][p] += slope[%d] * %s;\n", o, number, varied);
+		}
+	say(e, "    }\n");
+	for (int o = 0, number = 0; o < model->outputs; o++)
+		for (int k = 0; k < model->output[o].slopes; k++, number++)
+			emit_slope_in_column(e, o, number, &model->output[o].slope[k].along);
+	close_function(e, "s ds J");
 }
 
 int emit_varied_outputs(const struct emitter *e)
@@ -239,5 +339,7 @@ int emit_varied_outputs(const struct emitter *e)
 		   v.blocks + 1, v.first);
 	put_entries(e, false, "out_varied", &v);
 	emit_columns_now(e, &x);
+	if (slopes_of_outputs(e->model))
+		emit_outputs_by_slopes(e);
 	return x.size;
 }

@@ -10,6 +10,10 @@
 struct building;
 struct model;
 
+struct output_slope {               /* of an output along something: a state or its highest derivative, an input */
+	struct basis along;         /* of kind BASIS_ONE: what it has by a column itself, that of `index` */
+	const struct form *form;
+};
 struct output {
 	const char *name;
 	const struct unit *unit;    /* in which it is given; NULL: not known */
@@ -23,6 +27,8 @@ struct output {
 	mpq_t **load;               /* per load: factors of its columns, [column][segment] */
 	mpq_t *input[2];            /* per input: factors of u and u' */
 	mpq_t *force_column;        /* factors of the remainder, where an acceleration is read */
+	int slopes;                 /* where derivatives are asked for beside regions: those of what is no row in all */
+	struct output_slope *slope;
 };
 struct operator {                   /* A of y' = A y + loads + inputs + r(t, y); its M is that of the equations */
 	mpq_t *C, *K;

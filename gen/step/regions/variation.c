@@ -490,6 +490,8 @@ struct variation variation_of_outputs(const struct step *step, const struct layo
 		for (int segment = 0; segment < step->model->system.segments; segment++) {
 			const struct varied_model *v = &step->derivatives->varied[p];
 			for (int o = 0; o < step->model->outputs; o++) {
+				if (step->model->output[o].slopes)
+					continue;
 				mpq_t *more = output_row(v->more, x, o, segment);
 				mpq_t *less = output_row(v->less, x, o, segment);
 				for (int j = 0; j < x->size; j++)
