@@ -126,6 +126,7 @@
 #undef pl_switching_compensated_advance_d
 #undef pl_variation
 #undef pl_variation_change
+#undef pl_variation_rate
 #undef pl_varied
 #undef pl_saltation_time
 #undef pl_saltation_pass

@@ -126,6 +126,7 @@
 #define pl_switching_compensated_advance_d pl_switchingf_compensated_advance_d
 #define pl_variation pl_variationf
 #define pl_variation_change pl_variationf_change
+#define pl_variation_rate pl_variationf_rate
 #define pl_varied pl_variedf
 #define pl_saltation_time pl_saltationf_time
 #define pl_saltation_pass pl_saltationf_pass

@@ -69,6 +69,20 @@ typedef struct pl_variation {
     PL_REAL rate, bend, size, time, last_time;
 } pl_variation;
 
+/* How one column varies in time in a region, of the states alone: A S + A_p x; entry[first[0]] to entry[first[1] - 1] are
+ * those of A_p. */
+static inline void pl_variation_rate(int size, int states, const PL_REAL *A, const int *first, const pl_varied *entry,
+                                     const PL_REAL *x, const PL_REAL *S, PL_REAL *rate)
+{
+    int k;
+    pl_multiply(states, size, A, S, rate);
+    for (k = first[0]; k < first[1]; k++) {
+        if (entry[k].row < states) {
+            rate[entry[k].row] += entry[k].value * x[entry[k].column];
+        }
+    }
+}
+
 /* A change of the loads at the end of a segment of time begins: x' = A x up to then.  The next call ends it. */
 static inline void pl_variation_change(pl_variation *v, int size, const PL_REAL *A, const PL_REAL *x)
 {

@@ -30,7 +30,6 @@
  *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables;
  *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h},
  *                                which is in PL_WHOLE_STEP
- *     PL_RATED                   1: derivatives of outputs read PL(rates)
  *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free */
 #include "numbers.h"
 
@@ -509,34 +508,6 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
 #endif
     pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
     ds->status = ds->doubt.status;
-}
-#endif
-
-#if PL_RATED
-/* How S varies in time, S' = A S + A_p x, in a region; S has what is not of the states, which are in ds. */
-static void PL(rates)(const PL_TYPE *s, int matrix, const real x[PL_VECTOR], real S[PL_COLUMNS_D][PL_SIZE],
-                      const PL_D *ds, real rate[PL_COLUMNS_D][PL_ALL])
-{
-    const real *const A = PL_KEPT(slopes)[matrix][0];
-    const pl_varied *const entry = PL_OF(varied);
-    int i, j, p;
-    for (p = 0; p < PL_COLUMNS_D; p++) {
-        const int *const first = PL(varied_first) + p * (PL_MATRICES_D + 5) + matrix;
-        for (i = 0; i < PL_STATES; i++) {
-            S[p][i] = ds->s[p][PL_PLACE(i)];
-        }
-        for (i = 0; i < PL_STATES; i++) {
-            real sum = 0;
-            for (j = 0; j < PL_SIZE; j++) {
-                sum += A[i * PL_SIZE + j] * S[p][j];
-            }
-            for (j = first[0]; j < first[1]; j++) {
-                sum += entry[j].row == i ? entry[j].value * x[entry[j].column] : 0;
-            }
-            rate[p][PL_PLACE(i)] = sum;
-        }
-    }
-    (void)s;
 }
 #endif
 

@@ -20,7 +20,6 @@
 #undef PL_DECLARED
 #undef PL_BESIDE
 #undef PL_SHARED
-#undef PL_RATED
 #undef PL_STRIDE
 #undef PL_TUNED
 #undef PL_BOTH

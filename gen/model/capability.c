@@ -2,6 +2,7 @@
 /* What goes with what: the facts of a model, and the rows of capability.def that they make true. */
 #include "capability.h"
 #include "model/contacts/contacts.h"
+#include "reads.h"
 #include "model/tunable/tuning.h"
 
 #include <string.h>
@@ -62,14 +63,10 @@ static const struct output *bent_output(const struct model *model)
 static const struct output *felt_output(const struct model *model)
 {
 	for (int i = 0; i < model->outputs; i++) {
-		SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(model->equations.atoms));
-		const struct form *left = model->output[i].left;
-		if (model->output[i].reads_slider_force && model->output[i].slopes)
-			return &model->output[i];
-		for (const struct form_term **term = left ? terms_within(left, seen) : NULL; term && *term; term++)
-			if ((*term)->basis.atom && (*term)->basis.atom->kind == ATOM_CALL &&
-			    (*term)->basis.atom->function >= FN_FRICTION)
-				return &model->output[i];
+		const struct output *output = &model->output[i];
+		if ((output->reads_slider_force && output->slopes) ||
+		    (output->left && reads_friction(model, output->left)))
+			return output;
 	}
 	return NULL;
 }

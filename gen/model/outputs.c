@@ -392,7 +392,8 @@ static bool reads_highest(const struct building *b, const struct form *form)
 static bool has_slopes(const struct building *b, const struct output *output)
 {
 	const struct model *model = b->model;
-	if (b->spec->sensitivities == 0 || b->request->again.derivatives > 0 || !output->value)
+	if (b->spec->sensitivities == 0 || b->request->again.derivatives > 0 || !output->value ||
+	    (output->left && reads_friction(model, output->left)))
 		return false;
 	if (!model->switching)
 		return output->left && model->system.segments > 1 && model->remainder.force_columns == 0 &&
@@ -415,7 +416,8 @@ static void add_slope_along(struct building *b, struct output *output, struct ba
 	const int keep = (int)c->keep;
 	c->keep = KEEP_ALL;
 	c->whole_time = c->output = c->reading = true;
-	add_slope(b, output, along, *form_derivatives(c, 1, &form, along.kind == BASIS_INPUT, along.index, along.order));
+	add_slope(b, output, along,
+		  *form_derivatives(c, 1, &form, along.kind == BASIS_INPUT, along.index, along.order));
 	c->keep = (unsigned)keep;
 	c->whole_time = c->output = c->reading = false;
 }

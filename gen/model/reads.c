@@ -63,6 +63,17 @@ struct reads reads_of(const struct model *model, int count, const struct form *c
 	return reading;
 }
 
+bool reads_friction(const struct model *model, const struct form *form)
+{
+	SCRATCH bool *seen = ARRAY(bool, model->equations.atoms ? (size_t)atoms_count(model->equations.atoms) : 0);
+	bool any = false;
+	for (const struct form_term **term = terms_within(form, seen); *term; term++) {
+		const struct atom *atom = (*term)->basis.atom;
+		any = any || (atom && atom->kind == ATOM_CALL && atom->function >= FN_FRICTION);
+	}
+	return any;
+}
+
 bool reads_input_slope(const struct model *model, int input)
 {
 	bool any = false;

@@ -23,6 +23,7 @@ struct reads {                    /* what forms read */
 	bool time, math;            /* t itself; <math.h> */
 };
 bool reads_input_slope(const struct model *model, int input);      /* does an output? */
+bool reads_friction(const struct model *model, const struct form *form); /* what friction or a slider bears */
 bool has_steady_outputs(const struct model *model);      /* is what outputs have of the state the same all along? */
 struct reads reads_of(const struct model *model, int count, const struct form *const *form);
 int  coordinate_of_row(const struct model *model, int row);       /* whose equation it is */

@@ -245,20 +245,38 @@ static void emit_columns_now(const struct emitter *e, const struct layout *x)
 	close_function(e, "t ds S");
 }
 
+/* Is how highest derivatives vary in derivatives of outputs? */
+static bool reads_rates(const struct model *model)
+{
+	bool any = false;
+	for (int o = 0; o < model->outputs; o++)
+		for (int k = 0; k < model->output[o].slopes; k++)
+			any = any || is_highest(&model->frame, &model->output[o].slope[k].along);
+	return any;
+}
+
 /* How the states of a part go on varying, now */
 static void emit_rates(const struct emitter *e)
 {
 	const struct layout *layout = &e->step->layout;
+	const char *own = e->model->params.retuned ? "s->coeffs." : spell(e, "$o_");
+	const char *states = own_states(e), *place = place_in_loop(e);
 	open_function(e, NULL, "static void $o_rates_now(const $n *s, const $n_d *ds, double rate[$N_D][$N_STATES])");
 	say(e, "    const pl_contact contact = %s;\n"
 	       "    const double t = $n_time(s);\n"
-	       "    double S[$N_D][%d] = {{0.0}};\n", start_of_search(e), layout->size);
+	       "    double S[$N_D][%d] = {{0.0}}, now[$N_STATES];\n"
+	       "    int p;\n", start_of_search(e), layout->size);
 	declare_varied_params(e);
 	declare_region_vector(e);
 	emit_loads_of_step(e);
 	emit_region_vector(e, false);
 	emit_acting_now(e, layout);
-	say(e, "    $o_rates(s, contact.matrix, x, S, ds, rate);\n");
+	say(e, "    for (p = 0; p < $N_D; p++) {\n"
+	       "        for (i = 0; i < %s; i++) { S[p][i] = ds->s[p][%s]; }\n"
+	       "        pl_variation_rate(%d, %s, %sslopes[contact.matrix][0],\n"
+	       "                          $o_varied_first + p * %d + contact.matrix, %svaried, x, S[p], now);\n"
+	       "        for (i = 0; i < %s; i++) { rate[p][%s] = now[i]; }\n"
+	       "    }\n", states, place, layout->size, states, own, e->step->branches + 5, own, states, place);
 	close_function(e, "t");
 }
 

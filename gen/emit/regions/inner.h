@@ -55,7 +55,6 @@ void emit_own_variation(const struct emitter *e, const struct guards *guards); /
 struct variation;
 void put_entries(const struct emitter *e, bool own, const char *name, const struct variation *v);
 void emit_variation_macros(const struct emitter *e);
-bool reads_rates(const struct model *model); /* how highest derivatives vary is in derivatives of outputs */
 const char *no_variation(const struct emitter *e);                /* a last argument of the search; or nothing */
 /* How the forcing of a load varies with a column; whether it does, or whether any load or input does */
 struct varied_load { double a, w, p; };

@@ -496,15 +496,6 @@ void emit_own_variation(const struct emitter *e, const struct guards *g)
 		emit_varied_steps(e, v.over);
 }
 
-bool reads_rates(const struct model *model)
-{
-	bool any = false;
-	for (int o = 0; o < model->outputs; o++)
-		for (int k = 0; k < model->output[o].slopes; k++)
-			any = any || is_highest(&model->frame, &model->output[o].slope[k].along);
-	return any;
-}
-
 void emit_variation_macros(const struct emitter *e)
 {
 	if (!has_variation(e))
@@ -514,7 +505,6 @@ void emit_variation_macros(const struct emitter *e)
 	say_macro(e, "MATRICES_D", integer_text(e->step->branches));
 	say_macro(e, "DEGREE_D", integer_text(e->step->series.degree + 3));
 	say_macro(e, "SHARED", integer_text(shares_step(e)));
-	say_macro(e, "RATED", integer_text(reads_rates(e->step->shown->model)));
 }
 
 bool shares_step(const struct emitter *e)
