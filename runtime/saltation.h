@@ -69,8 +69,8 @@ typedef struct pl_variation {
     PL_REAL rate, bend, size, time, last_time;
 } pl_variation;
 
-/* How one column varies in time in a region, of the states alone: A S + A_p x; entry[first[0]] to entry[first[1] - 1] are
- * those of A_p. */
+/* How one column varies in time in a region, of the states alone: A S + A_p x; A_p is entry[first[0]] to
+ * entry[first[1] - 1]. */
 static inline void pl_variation_rate(int size, int states, const PL_REAL *A, const int *first, const pl_varied *entry,
                                      const PL_REAL *x, const PL_REAL *S, PL_REAL *rate)
 {

@@ -60,7 +60,7 @@ static const struct output *bent_output(const struct model *model)
 }
 
 /* One that reads what friction bears, which no slope has */
-static const struct output *felt_output(const struct model *model)
+static const struct output *output_of_friction(const struct model *model)
 {
 	for (int i = 0; i < model->outputs; i++) {
 		const struct output *output = &model->output[i];
