@@ -312,7 +312,7 @@ static bool retuned(void *s, const char *values, double *step)
 	const int count = of->model ? of->model->params : of->modelf->params;
 	double value[MOST];
 	float narrowed[MOST];
-	*step = h;
+	*step = of->model ? of->model->h : (double)of->modelf->h;
 	for (int i = 0; i < count; i++) {
 		const char *const name = of->model ? of->model->param_names[i] : of->modelf->param_names[i];
 		value[i] = of->model ? of->model->param_values[i] : (double)of->modelf->param_values[i];
@@ -332,8 +332,9 @@ static bool retuned(void *s, const char *values, double *step)
 }
 
 /* With the values written the operator is another one, where a scheme leaves what differs to a quadrature: both are off
- * the truth, each by as much as a scheme may. A series and a collocation have none; where they step to a tolerance, an
- * expression that rounds otherwise may choose other lengths of steps, and each run is off by a tolerance a step. */
+ * the truth, each by as much as a scheme may, or by eighths of a step as much less as its order is. A series and a
+ * collocation have none; where they step to a tolerance, an expression that rounds otherwise may choose other lengths
+ * of steps, and each run is off by a tolerance a step. */
 static double retuned_bound(int steps)
 {
 	static const char *const of_equations[] = { "taylor", "radau", "auto", "etdcol" };
@@ -385,34 +386,49 @@ static void judge_retune(void)
 		of->tuned->init(w);
 		model_get(s, y);
 		of->tuned->set(w, 0, y);
+		struct beside eighths = strstr(of->retune, "step=") ? (struct beside){ NULL } : begin_eighths(0, 0, y);
+		if (eighths.fine) {
+			by_eighths(true);
+			(void)retuned(eighths.fine, of->retune, &step);
+			by_eighths(false);
+		}
 		if (retuned(s, of->retune, &step))
 			for (int k = 0; k < STEPS; k++) {
+				double finer[MOST] = {0};
 				bool good = true;
 				samples(k, u);
 				model_step(s, u);
+				if (eighths.fine) {
+					step_by_eighths(&eighths, u);
+					get_eighths(&eighths, finer, model_get);
+				}
 				of->tuned->step(w, inputs ? u : NULL);
 				model_get(s, y);
 				of->tuned->get(w, expected);
 				for (int i = 0; i < states; i++)
 					largest = fmax(largest, fabs(expected[i]));
 				for (int i = 0; i < states; i++)
-				    good = near(y[i], expected[i], retuned_bound(k) * largest,
-						"retuned, against the spec with these values", (k + 1) * step,
-						state_name(i)) &&
+				    good = in_order(s, y[i], finer[i], expected[i], retuned_bound(k) * largest,
+						    "retuned, against the spec with these values", (k + 1) * step,
+						    state_name(i)) &&
 					   good;
 				model_out(s, y);
+				if (eighths.fine)
+					get_eighths(&eighths, finer, model_out);
 				of->tuned->out(w, expected);
 				for (int i = 0; i < outputs; i++)
 					out_size = worse(out_size, fabs(expected[i]));
 				for (int i = 0; i < outputs && !(in_float && largest > 1e3); i++)
-				    good = near(y[i], expected[i], retuned_bound(k) * fmax(largest, out_size),
-						"retuned, outputs", (k + 1) * step, output_name(i)) &&
+				    good = in_order(s, y[i], finer[i], expected[i],
+						    retuned_bound(k) * fmax(largest, out_size),
+						    "retuned, outputs", (k + 1) * step, output_name(i)) &&
 					   good;
 				if (!good)
 					break;
 				if (k == STEPS - 1)
 					judge_tuned_jump(s, largest);
 			}
+		end_beside(&eighths);
 	}
 	free(s), free(w);
 }

@@ -56,7 +56,7 @@ static void judge_peaks(void)
 }
 
 /* From here on the model by eighths of what it steps at once, or no longer */
-static void by_eighths(bool now)
+void by_eighths(bool now)
 {
 	static struct subject finer;
 	static const struct subject *coarse;
@@ -184,7 +184,7 @@ void step_by_eighths(struct beside *b, const double *u)
 	memcpy(b->before, u, sizeof *u * MOST);
 }
 
-static void get_eighths(const struct beside *b, double *y, void (*get)(const void *, double *))
+void get_eighths(const struct beside *b, double *y, void (*get)(const void *, double *))
 {
 	by_eighths(true);
 	get(b->fine, y);

@@ -74,6 +74,8 @@ struct beside {
 
 void run_steps(void);
 struct beside begin(void);
+void by_eighths(bool now);
+void get_eighths(const struct beside *b, double *y, void (*get)(const void *, double *));
 void step_by_eighths(struct beside *b, const double *u);
 void step_beside(struct beside *b, int k);
 void set_beside(struct beside *b, double t, const double *y);
