@@ -498,7 +498,8 @@ static void print_options(FILE *to)
 	scheme = scheme || has("taylor12") || has("over3");
 	if (has("loads") && !scheme && !has("friction") && !has("impact"))
 		fputs(" --scheme etdrk4", to);
-	const bool kinks = has("kinked") || (has("loads") && has("change"));
+	/* exact has no remainder that a load could be in */
+	const bool kinks = has("kinked") || (has("loads") && has("change") && !has("exact"));
 	const bool curves = kinks || has("smooth") || has("constraint") || has("implicit") || expands() || moves();
 	fprintf(to, "\n# class: %s\n",
 		has("friction")                      ? "sticking"
