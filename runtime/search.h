@@ -157,10 +157,12 @@ static const PL_SEARCH PL(switching) = {PL_TABLES};
 #if PL_COLUMNS_D > 0
 #define PL_AND_VARIATION , pl_variation *v
 #define PL_V , v
+#define PL_WITHOUT_V (v == NULL)
 #define PL_NO_V , (pl_variation *)0
 #else
 #define PL_AND_VARIATION
 #define PL_V
+#define PL_WITHOUT_V 1
 #define PL_NO_V
 #endif
 
@@ -214,12 +216,11 @@ static PL_INLINE double PL(dot)(const double *row, const double *x)
 #define PL_SUM(row, x) PL(dot)(row, x)
 #define PL_EACH
 #endif
-#define PL_MEETS (!PL_OWN && PL_SEGMENTS < 2 && !PL_SLOTS && !PL_COLUMNS_D && PL_SIZE < 9 && PL_DEGREE < 17)
+#define PL_MEETS (!PL_OWN && PL_SEGMENTS < 2 && !PL_SLOTS && PL_SIZE < 9 && PL_DEGREE < 17)
 #include "unmet.h"
 #endif
 
 #if PL_SEGMENTS > 1
-
 /* The same intervals after the next change; where they cannot be then, the equations of the region where x is */
 static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
 {
@@ -333,8 +334,8 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
         return;
     }
 #endif
-#if PL_MEETS
-    if (tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
+#if PL_MEETS /* derivatives, which the search takes along, leave the state as it is without them */
+    if (PL_WITHOUT_V && tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
         return;
     }
 #endif
@@ -345,7 +346,6 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #endif
 
 /* ---- a step, and what is asked about it ---- */
-
 #if PL_EVENT_FREE && PL_GUARDS
 #define PL_SOUGHT PL_APART_HARD void PL(by_search)
 #elif PL_EVENT_FREE
