@@ -7,7 +7,7 @@
 set -e
 build=$(realpath "$1")
 shift
-[ $# -gt 0 ] || set -- duffing pendulum springs mechanism
+[ $# -gt 0 ] || set -- duffing pendulum springs impacts mechanism
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 trap 'exit 1' HUP INT TERM
@@ -17,7 +17,11 @@ echo model,method,family,error,thousand_instructions >"$csv"
 
 # described MODEL: params as `k = 1, c = 0.2` in by; coordinates and starts in coords, init; the equations
 described() {
+	gap= restitution=
 	case $1 in
+	impacts)
+		by='k3 = 1, c = 0.2, F = 2' coords=x init='x = 0.1' gap=0.5 restitution=0.8
+		equations="x'' + c*x' + x + k3*x^3 = F*cos(1.4*t)" ;;
 	duffing)
 		by='k3 = 1, c = 0.2, F = 0.5' coords=x init='x = 1'
 		equations="x'' + c*x' + x + k3*x^3 = F*cos(1.4*t)" ;;
@@ -74,12 +78,15 @@ for model; do
 	names=$(echo "$by" | sed 's/ = [^,]*//g')
 	printf '%s\n' 'model subject' "param $by" "coord $coords" "init $init" 'step 0.1' "$equations" \
 		>"$work/subject.spec"
+	[ -z "$gap" ] || echo "stop between $coords, ground at $gap restitution $restitution" >>"$work/subject.spec"
 	printf '%s\n' 'model peer' "coord $coords, $names" "init $init, $by" 'step 0.1' "$equations" \
 		>"$work/peer.spec"
 	echo "$names" | tr -d , | tr ' ' '\n' | sed "s/\$/'' = 0/" >>"$work/peer.spec"
 	sh bench/charts/equations.sh "$build/plgen" "$work/equations.h" "$work/each.h" "$work/peer.spec"
 	start=$(cd "$work" && "$build/plrun" peer.spec 0 2>/dev/null | tail -n 1 | cut -d , -f 2-)
-	gcc -std=gnu11 -O3 -w -I"$work" "-DSTART=$start" "-DPARAMS=$(echo "$names" | wc -w)" bench/sensitivities.c \
+	# shellcheck disable=SC2086
+	gcc -std=gnu11 -O3 -w -I"$work" "-DSTART=$start" "-DPARAMS=$(echo "$names" | wc -w)" \
+		${gap:+-DGAP=$gap -DRESTITUTION=$restitution} bench/sensitivities.c \
 		-o "$work/peer" -lsundials_cvodes -lsundials_nvecserial -lm
 	# ours TOLERANCE
 	ours() {
@@ -96,11 +103,13 @@ for model; do
 		for way in forward adjoint; do count "$work/ours" $way >>"$work/ours_$way"; done
 	done
 	for e in 1e-3 1e-4 1e-5 1e-6 1e-7 1e-8 1e-9 1e-10 1e-11 1e-12 1e-13; do
-		for way in forward adjoint; do count "$work/peer" $way $e >>"$work/peer_$way"; done
+		for way in forward ${gap:-adjoint}; do
+			[ "$way" = "$gap" ] || count "$work/peer" "$way" $e >>"$work/peer_$way"
+		done
 	done
 	for way in forward adjoint; do
 		shown "plgen $way" ours <"$work/ours_$way"
-		shown "CVODES $way" adaptive <"$work/peer_$way"
+		[ ! -f "$work/peer_$way" ] || shown "CVODES $way" adaptive <"$work/peer_$way"
 	done
 	rm "$work"/ours_* "$work"/peer_*
 done

@@ -120,15 +120,15 @@ do for [form=1:forms] {
 	set logscale xy; unset mxtics; unset mytics; unset key
 	set lmargin 9; set rmargin 1; set tmargin 2; set bmargin 3.5
 	do for [k=1:words(models)] {
-		set origin 0.4*((k - 1)%2), 0.5 - 0.5*((k - 1)/2); set size 0.4,0.5
+		set origin 0.33*((k - 1)%3), 0.5 - 0.5*((k - 1)/3); set size 0.33,0.5
 		set title word(models, k) offset 0,-0.6
 		set xlabel (k > 2 ? 'thousands of instructions' : '')
-		set ylabel (k%2 ? 'error of the derivatives' : '')
+		set ylabel (k%3 == 1 ? 'error of the derivatives' : '')
 		load series(csv, "-v 'where=model=".word(models, k)."' -v x=thousand_instructions -v y=error")
 		eval 'plot '.clauses
 	}
 	eval bare; set origin 0,0; set size 1,1
-	set key at screen 0.99,0.9 right top vertical Left reverse samplen 3 spacing 1.3 font ',11'
+	set key at screen 0.97,0.4 right top vertical Left reverse samplen 3 spacing 1.3 font ',11'
 	eval keyed; eval dressed
 }
 
