@@ -14,30 +14,30 @@ static double row[ROWS][COLUMNS]; /* crossings in the step, outputs, states */
 /* The addresses of y, params, u, the rows; then how many rows there are */
 EXPORTED(place) unsigned long place(int what)
 {
-    return what == 0 ? (unsigned long)y : what == 1 ? (unsigned long)params : what == 2 ? (unsigned long)u
-         : what == 3 ? (unsigned long)row : ROWS;
+	return what == 0 ? (unsigned long)y : what == 1 ? (unsigned long)params : what == 2 ? (unsigned long)u
+		 : what == 3 ? (unsigned long)row : ROWS;
 }
 
 /* Sets t = 0 and the spec's initial values, and shows them in y. */
 EXPORTED(init) void init(void)
 {
-    PAGE(init)(&s);
-    PAGE(get)(&s, y);
+	PAGE(init)(&s);
+	PAGE(get)(&s, y);
 }
 
 /* Sets the state y at the time t. */
 EXPORTED(set) void set(double t)
 {
-    PAGE(set)(&s, t, y);
+	PAGE(set)(&s, t, y);
 }
 
 /* Takes the params; 0, or why the model cannot have these values. */
 EXPORTED(tune) int tune(void)
 {
 #if PAGE_PARAMS
-    return PAGE(any_retune)(&s, params, PAGE_H);
+	return PAGE(any_retune)(&s, params, PAGE_H);
 #else
-    return 0;
+	return 0;
 #endif
 }
 
@@ -45,57 +45,57 @@ EXPORTED(tune) int tune(void)
 EXPORTED(hold) void hold(void)
 {
 #if PAGE_RAMPS
-    PAGE(hold)(&s, u);
+	PAGE(hold)(&s, u);
 #endif
 }
 
 /* Writes row k of the state as it is. */
 EXPORTED(look) void look(int k)
 {
-    row[k][0] = 0.0;
-    PAGE(out)(&s, row[k] + 1);
-    PAGE(get)(&s, row[k] + 1 + PAGE_OUTPUTS);
+	row[k][0] = 0.0;
+	PAGE(out)(&s, row[k] + 1);
+	PAGE(get)(&s, row[k] + 1 + PAGE_OUTPUTS);
 }
 
 /* Takes n steps, at most ROWS, with a sample of the inputs each; the status, 0 while all is well. */
 EXPORTED(steps) int steps(int n)
 {
-    int k;
-    for (k = 0; k < n; k++) {
+	int k;
+	for (k = 0; k < n; k++) {
 #if PAGE_CROSSES
-        const uint64_t before = PAGE(crossed)(&s);
+		const uint64_t before = PAGE(crossed)(&s);
 #endif
 #if PAGE_INPUTS
-        PAGE(step)(&s, u + k * PAGE_INPUTS);
+		PAGE(step)(&s, u + k * PAGE_INPUTS);
 #else
-        PAGE(step)(&s);
+		PAGE(step)(&s);
 #endif
-        look(k);
+		look(k);
 #if PAGE_CROSSES
-        row[k][0] = (double)(PAGE(crossed)(&s) - before);
+		row[k][0] = (double)(PAGE(crossed)(&s) - before);
 #endif
-    }
-    return PAGE(status)(&s);
+	}
+	return PAGE(status)(&s);
 }
 
 /* Writes into row 0 what a step makes of the state y, with the samples before it and of it one behind the other in u;
  * the run itself stays where it is. */
 EXPORTED(probe) void probe(void)
 {
-    static PAGE_TYPE kept;
-    kept = s;
-    PAGE(set)(&s, PAGE(time)(&s), y);
-    hold();
+	static PAGE_TYPE kept;
+	kept = s;
+	PAGE(set)(&s, PAGE(time)(&s), y);
+	hold();
 #if PAGE_INPUTS
-    PAGE(step)(&s, u + PAGE_INPUTS);
+	PAGE(step)(&s, u + PAGE_INPUTS);
 #else
-    PAGE(step)(&s);
+	PAGE(step)(&s);
 #endif
-    look(0);
-    s = kept;
+	look(0);
+	s = kept;
 }
 
 EXPORTED(time) double time(void)
 {
-    return PAGE(time)(&s);
+	return PAGE(time)(&s);
 }

@@ -19,27 +19,27 @@ export LC_ALL
 
 # charted NAME [PROGRAM]: its variants, and what its program makes of them
 charted() {
-    sh bench/charts/variants.sh "$1" "$build/plgen" "$work/variants" ${2:+"$2"} &&
-        "$build/bench/charts/$1" "$work/variants" "$work"
+	sh bench/charts/variants.sh "$1" "$build/plgen" "$work/variants" ${2:+"$2"} &&
+		"$build/bench/charts/$1" "$work/variants" "$work"
 }
 
 tables=$work/$name.csv
 case $name in
-    friction) charted friction ;;
-    less) charted less "$build/bench/charts/less" ;;
-    needs) sh bench/charts/needs.sh "$build/plgen" "$work" "$work" ;;
-    structural)
-        tables="$work/integrators_check.csv $work/frame.csv"
-        "$build/bench/charts/integrators" --quick "$work"         # its status: what stands in the table
-        charted frame ;;
+	friction) charted friction ;;
+	less) charted less "$build/bench/charts/less" ;;
+	needs) sh bench/charts/needs.sh "$build/plgen" "$work" "$work" ;;
+	structural)
+		tables="$work/integrators_check.csv $work/frame.csv"
+		"$build/bench/charts/integrators" --quick "$work"         # its status: what stands in the table
+		charted frame ;;
 esac >"$work/log" 2>&1
 status=$?
 # Words
 # shellcheck disable=SC2086
 ls $tables >>"$work/log" 2>&1 && { [ $status -eq 0 ] || [ "$name" = structural ]; } || {
-    sed 's/^/# /' "$work/log"
-    echo "Bail out! exit status $status"
-    exit 99
+	sed 's/^/# /' "$work/log"
+	echo "Bail out! exit status $status"
+	exit 99
 }
 [ "$name" != structural ] || cksum <"$work/frame_record.csv" >"$work/cksum"
 # shellcheck disable=SC2086

@@ -27,65 +27,66 @@ enum { MOST_STATES = 16 };
 
 static int not_finite(const void *s)
 {
-    real y[MOST_STATES];
-    int i, found = 0;
-    the_model.get(s, y);
-    for (i = 0; i < the_model.states; i++)
-        found |= !isfinite(y[i]);
-    return found;
+	real y[MOST_STATES];
+	int i, found = 0;
+	the_model.get(s, y);
+	for (i = 0; i < the_model.states; i++)
+		found |= !isfinite(y[i]);
+	return found;
 }
 
 /* State k is `value` at the start; 1 where something was not finite and the status silent, or the last good state not
  * kept */
 static int silent(void *s, int k, real value)
 {
-    static const real samples[4] = {1, 1, 1, 1};
-    const descriptor *m = &the_model;
-    real y[MOST_STATES], between[MOST_STATES];
-    int i, found = 0, bad = 0;
-    m->init(s);
-    m->get(s, y);
-    y[k] = value;
-    m->set(s, 0, y);
-    for (i = 0; i < 6; i++) {
-        found = not_finite(s);
-        if (found && !(m->status(s) & PL_NOT_FINITE) && !bad++)
-            printf("state %d = %g, step %d: status %d\n", k, (double)value, i, m->status(s));
-        if (KEEPS && found && isfinite(value) && !bad++)
-            printf("state %d = %g, step %d: a state is not finite\n", k, (double)value, i);
-        if (m->at)
-            m->at(s, m->inputs ? samples : NULL, m->h / 2, between);
-        m->step(s, m->inputs ? samples : NULL);
-    }
-    return bad;
+	static const real samples[4] = {1, 1, 1, 1};
+	const descriptor *m = &the_model;
+	real y[MOST_STATES], between[MOST_STATES];
+	int i, found = 0, bad = 0;
+	m->init(s);
+	m->get(s, y);
+	y[k] = value;
+	m->set(s, 0, y);
+	for (i = 0; i < 6; i++) {
+		found = not_finite(s);
+		if (found && !(m->status(s) & PL_NOT_FINITE) && !bad++)
+			printf("state %d = %g, step %d: status %d\n", k, (double)value, i, m->status(s));
+		if (KEEPS && found && isfinite(value) && !bad++)
+			printf("state %d = %g, step %d: a state is not finite\n", k, (double)value, i);
+		if (m->at)
+			m->at(s, m->inputs ? samples : NULL, m->h / 2, between);
+		m->step(s, m->inputs ? samples : NULL);
+	}
+	return bad;
 }
 
 int main(void)
 {
-    const real odd[3] = {(real)INFINITY, (real)-INFINITY, (real)NAN};
-    void *s = malloc(the_model.size);
-    int bad = 0, k, i;
-    for (k = 0; k < the_model.states; k += APART > 8 ? 5 : 1) {
-        for (i = 0; i < 3; i++)
-            bad += silent(s, k, odd[i]);
-        for (i = 5; i < (sizeof(real) == 4 ? 38 : 308); i += (sizeof(real) == 4 ? 3 : 9) * APART)
-            bad += silent(s, k, (real)pow(10, i)) + silent(s, k, (real)-pow(10, i));
-    }
-    free(s);
-    return bad != 0;
+	const real odd[3] = {(real)INFINITY, (real)-INFINITY, (real)NAN};
+	void *s = malloc(the_model.size);
+	int bad = 0, k, i;
+	for (k = 0; k < the_model.states; k += APART > 8 ? 5 : 1) {
+		for (i = 0; i < 3; i++)
+			bad += silent(s, k, odd[i]);
+		for (i = 5; i < (sizeof(real) == 4 ? 38 : 308); i += (sizeof(real) == 4 ? 3 : 9) * APART)
+			bad += silent(s, k, (real)pow(10, i)) + silent(s, k, (real)-pow(10, i));
+	}
+	free(s);
+	return bad != 0;
 }
 EOF
 
 # looks SCHEME REAL: of model.spec
 looks() {
-    [ "$2" = double ] && flag= || flag=-DFLOAT
-    (cat model.spec; echo "scheme $1") >one.spec
-    case $1 in taylor* | radau | auto) keeps=1 ;; *) keeps=0 ;; esac
-    # shellcheck disable=SC2086
-    "$plgen" --prefix the --real "$2" one.spec >one.c 2>log &&
-        $run_cc $flag -DKEEPS=$keeps -DAPART=$apart -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log &&
-        timeout 120 ./look >>log
-    result $? "$title, $1, $2: what is not finite is told"
+	[ "$2" = double ] && flag= || flag=-DFLOAT
+	(cat model.spec; echo "scheme $1") >one.spec
+	case $1 in taylor* | radau | auto) keeps=1 ;; *) keeps=0 ;; esac
+	# shellcheck disable=SC2086
+	"$plgen" --prefix the --real "$2" one.spec >one.c 2>log &&
+		$run_cc $flag -DKEEPS=$keeps -DAPART=$apart -I"$root/runtime" look.c one.c "$archive" -lm \
+			-o look 2>>log &&
+		timeout 120 ./look >>log
+	result $? "$title, $1, $2: what is not finite is told"
 }
 
 # each TITLE SCHEME ...: in both types; in `make check` by turns
@@ -95,18 +96,18 @@ apart=2
 [ -z "${LONG:-}" ] || apart=1
 usual=$apart
 each() {
-    title=$1
-    shift
-    for scheme; do
-        for real in double float; do
-            turn=$((turn + 1))
-            [ -z "${LONG:-}" ] && [ $(((turn + turn / 2) % 2)) = 1 ] || looks "$scheme" $real
-        done
-    done
+	title=$1
+	shift
+	for scheme; do
+		for real in double float; do
+			turn=$((turn + 1))
+			[ -z "${LONG:-}" ] && [ $(((turn + turn / 2) % 2)) = 1 ] || looks "$scheme" $real
+		done
+	done
 }
 
 spec() {
-    { echo 'model m'; cat; echo 'step 0.01'; } >model.spec
+	{ echo 'model m'; cat; echo 'step 0.01'; } >model.spec
 }
 
 spec <<'EOF'

@@ -50,21 +50,21 @@ EOF
 : >list
 # NAME ROWS SPEC OPTIONS: ROWS: what the table should have; 0: none
 while read -r name rows spec options; do
-    case $spec in
-        models/*) file=$root/$spec ;;
-        linear/*) file=$(path_of "tests/emitted/$spec") ;;
-        forms/*) file=$(path_of "tests/$spec") ;;
+	case $spec in
+		models/*) file=$root/$spec ;;
+		linear/*) file=$(path_of "tests/emitted/$spec") ;;
+		forms/*) file=$(path_of "tests/$spec") ;;
         *) file=$spec ;;
-    esac
-    # shellcheck disable=SC2086
-    "$plgen" --fast $options --prefix "$name" "$file" >"$name.c" 2>log || { result 1 "$name is written"; continue; }
-    type=double
-    case $options in *float*) type=float ;; esac
-    echo "$name $rows $type" >>list
-    found=$(sed -n 's/^enum { [A-Z0-9_]*_ROWS = \([0-9]*\) }.*/\1/p' "$name.c")
-    echo "found ${found:-0} rows, expected $rows" >log
-    [ "${found:-0}" = "$rows" ]
-    result $? "$name: $rows rows in a block"
+	esac
+	# shellcheck disable=SC2086
+	"$plgen" --fast $options --prefix "$name" "$file" >"$name.c" 2>log || { result 1 "$name is written"; continue; }
+	type=double
+	case $options in *float*) type=float ;; esac
+	echo "$name $rows $type" >>list
+	found=$(sed -n 's/^enum { [A-Z0-9_]*_ROWS = \([0-9]*\) }.*/\1/p' "$name.c")
+	echo "found ${found:-0} rows, expected $rows" >log
+	[ "${found:-0}" = "$rows" ]
+	result $? "$name: $rows rows in a block"
 done <<'EOF'
 sdcs 32 models/sdcs.spec
 sdcs_direct 32 models/sdcs.spec --form direct
@@ -102,26 +102,26 @@ f_first2 8 linear/first2.spec --real float --rows 8
 EOF
 
 for type in double float; do
-    # All in one file: a compiler that starts once
-    awk -v type=$type '$3 == type { print $1 ".c" }' list | xargs cat >"$type.c"
-    awk -v type=$type '$3 == type { print "X(" $1 ", " $2 ")" }' list >"models_$type.h"
-    [ $type = double ] && real= || real=-DREAL_FLOAT
-    # shellcheck disable=SC2086
-    $run_cc $real "-DMODELS=\"models_$type.h\"" "-DCODE=\"$type.c\"" -I. -I"$root/runtime" \
-        "$root/tests/emitted/rows.c" "$archive" -lm -o "rows_$type" >log 2>&1
-    result $? "$type: compiles"
-    : >log
-    ./"rows_$type" >found 2>&1
-    status=$?
-    while IFS= read -r line; do
-        case $line in
-            'ok '*) : >log; result 0 "${line#ok }" ;;
-            'not ok '*) result 1 "${line#not ok }"; : >log ;;
+	# All in one file: a compiler that starts once
+	awk -v type=$type '$3 == type { print $1 ".c" }' list | xargs cat >"$type.c"
+	awk -v type=$type '$3 == type { print "X(" $1 ", " $2 ")" }' list >"models_$type.h"
+	[ $type = double ] && real= || real=-DREAL_FLOAT
+	# shellcheck disable=SC2086
+	$run_cc $real "-DMODELS=\"models_$type.h\"" "-DCODE=\"$type.c\"" -I. -I"$root/runtime" \
+		"$root/tests/emitted/rows.c" "$archive" -lm -o "rows_$type" >log 2>&1
+	result $? "$type: compiles"
+	: >log
+	./"rows_$type" >found 2>&1
+	status=$?
+	while IFS= read -r line; do
+		case $line in
+			'ok '*) : >log; result 0 "${line#ok }" ;;
+			'not ok '*) result 1 "${line#not ok }"; : >log ;;
             *) echo "$line" >>log ;;
-        esac
-    done <found
-    grep -q '^ok all' found && [ $status -eq 0 ]
-    result $? "$type: the program came to its end"
+		esac
+	done <found
+	grep -q '^ok all' found && [ $status -eq 0 ]
+	result $? "$type: the program came to its end"
 done
 # Without options none of these tables: the small form; what needs least operations, and batches, keep the phasors.
 : >log
@@ -132,39 +132,39 @@ echo "$lines lines, expected 270 at most; tables:" >log
 result $? 'sdcsf without options: no rows, no phasors'
 # phasors WORDS SPEC [OPTION ...]: its struct has those of the last refresh
 phasors() {
-    words=$1 spec=$2
-    shift 2
-    "$plgen" "$@" "$spec" >kind.c 2>log && grep -q ' since; ' kind.c
-    result $? "$words: rotated phasors"
+	words=$1 spec=$2
+	shift 2
+	"$plgen" "$@" "$spec" >kind.c 2>log && grep -q ' since; ' kind.c
+	result $? "$words: rotated phasors"
 }
 for option in --fast --batch --refresh=8; do
-    phasors "sdcsf $option" "$root/models/sdcsf.spec" $option
+	phasors "sdcsf $option" "$root/models/sdcsf.spec" $option
 done
 { cat "$root/models/sdcsf.spec"; echo 'need x1 within 1e-11 until 1'; } >needed.spec
 phasors 'a need' needed.spec
 "$plgen" --refresh 8 "$root/models/sdcsf.spec" >new.c 2>log &&
-    "$plgen" --anchors 8 "$root/models/sdcsf.spec" >old.c 2>>log && cmp new.c old.c >>log 2>&1 && [ ! -s log ]
+	"$plgen" --anchors 8 "$root/models/sdcsf.spec" >old.c 2>>log && cmp new.c old.c >>log 2>&1 && [ ! -s log ]
 result $? '--anchors: another name of --refresh, and nothing is said'
 
 # Blocks are loops that become vectors: at -O3 gcc leaves them as they are, written out they would be 1.4 times as long.
 # instructions OPTION: of what NAME_run consists of, by gcc with vectors of 256 bits
 instructions() {
-    gcc -std=c99 "$1" -march=x86-64-v3 -I"$root/runtime" -S -o - driven.c 2>>log | awk '
-        /^driven_(rows|block|run)(\.[a-z.0-9]*)?:/ { inside = 1 }
-        inside && /^\t[a-z]/ { count++ }
-        /^\t\.size/ { inside = 0 }
-        END { print count + 0 }'
+	gcc -std=c99 "$1" -march=x86-64-v3 -I"$root/runtime" -S -o - driven.c 2>>log | awk '
+		/^driven_(rows|block|run)(\.[a-z.0-9]*)?:/ { inside = 1 }
+		inside && /^\t[a-z]/ { count++ }
+		/^\t\.size/ { inside = 0 }
+		END { print count + 0 }'
 }
 printf '%s\n' 'model driven' 'input u hold first' 'coord x, y' "x'' + 0.1*x' + 2*x - y = u" \
-    "y'' + 0.2*y' + 3*y - x = 0" "output x, y, x', x''" 'step 0.1' >driven.spec
+	"y'' + 0.2*y' + 3*y - x = 0" "output x, y, x', x''" 'step 0.1' >driven.spec
 : >log
 "$plgen" --fast -o driven.c driven.spec 2>>log
 if gcc -march=x86-64-v3 -E -x c /dev/null >/dev/null 2>&1 && ! gcc --version | grep -q clang; then
-    small=$(instructions -O2) large=$(instructions -O3)
-    echo "$small instructions at -O2, $large at -O3, at most 1.1 times as many" >>log
-    [ "$small" -gt 50 ] && [ $((10 * large)) -le $((11 * small)) ]
-    result $? 'rows of ramps: at -O3 the same loops as at -O2'
+	small=$(instructions -O2) large=$(instructions -O3)
+	echo "$small instructions at -O2, $large at -O3, at most 1.1 times as many" >>log
+	[ "$small" -gt 50 ] && [ $((10 * large)) -le $((11 * small)) ]
+	result $? 'rows of ramps: at -O3 the same loops as at -O2'
 else
-    skip 'rows of ramps: at -O3 the same loops as at -O2' 'there is no gcc for x86-64'
+	skip 'rows of ramps: at -O3 the same loops as at -O2' 'there is no gcc for x86-64'
 fi
 tap_end

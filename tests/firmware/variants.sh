@@ -16,24 +16,24 @@ shift 4
 cat "$@" | grep -v '^#' >"$out.lines"
 echo '#include "variant.h"' >"$out.part"
 while read -r name model options; do
-    selftest=--selftest
-    refresh='--anchors 1'
-    case $options in untested*) selftest= options=${options#untested} ;; esac
-    case $options in anchored*) refresh= options=${options#anchored} ;; esac
-    order=
-    case $options in *order=*) order=${options#*order=} options=${options%order=*} ;; esac
-    spec=$folder/$model.spec
-    [ -f "$spec" ] || spec=${0%/*}/$model.spec
-    # shellcheck disable=SC2086
-    "$plgen" $selftest $refresh --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} \
-        ${order:+--scheme "taylor $order"} "$spec" >>"$out.part"
+	selftest=--selftest
+	refresh='--anchors 1'
+	case $options in untested*) selftest= options=${options#untested} ;; esac
+	case $options in anchored*) refresh= options=${options#anchored} ;; esac
+	order=
+	case $options in *order=*) order=${options#*order=} options=${options%order=*} ;; esac
+	spec=$folder/$model.spec
+	[ -f "$spec" ] || spec=${0%/*}/$model.spec
+	# shellcheck disable=SC2086
+	"$plgen" $selftest $refresh --rows 1 --real "$real" --prefix "${name}_$real" ${options#tunable} \
+		${order:+--scheme "taylor $order"} "$spec" >>"$out.part"
 done <"$out.lines"
 {
-    echo 'const struct variant variants_'"$real"'[] = {'
-    sed -e "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t" \
-        -e "s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t" \
-        -e "s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
-    echo '    {0, 0, 0, 0}};'
+	echo 'const struct variant variants_'"$real"'[] = {'
+	sed -e "s/\([^ ]*\) [^ ]* untested.*/    UNTESTED(\1_$real),/; t" \
+		-e "s/\([^ ]*\) [^ ]* tunable.*/    TUNABLE(\1_$real),/; t" \
+		-e "s/ .*//; s/.*/    VARIANT(&_$real),/" "$out.lines"
+	echo '    {0, 0, 0, 0}};'
 } >>"$out.part"
 rm "$out.lines"
 mv "$out.part" "$out"

@@ -251,16 +251,16 @@ cat >kept.c <<'C'
 #include <stdio.h>
 int main(void)
 {
-    ends s;
-    real y[2], near = sizeof *y == 4 ? 1e-3 : 1e-11;
-    ends_init(&s);
-    while (ends_status(&s) == 0 && s.k < 100)
-        ends_step(&s);
-    ends_get(&s, y);
-    const double left = acos(-1)/2 - y[0], off = cos(y[0])*y[1]*y[1] + y[0] - 4*cos(1) - 1;
-    printf("status %d, %g before pi/2, energy off by %g\n", ends_status(&s), left, off);
-    return s.k != 21 || ends_status(&s) != PL_SINGULAR_MASS || fabs(left) > near ||
-           fabs(off) > (near > 1e-9 ? 0.1 : 1e-3);
+	ends s;
+	real y[2], near = sizeof *y == 4 ? 1e-3 : 1e-11;
+	ends_init(&s);
+	while (ends_status(&s) == 0 && s.k < 100)
+		ends_step(&s);
+	ends_get(&s, y);
+	const double left = acos(-1)/2 - y[0], off = cos(y[0])*y[1]*y[1] + y[0] - 4*cos(1) - 1;
+	printf("status %d, %g before pi/2, energy off by %g\n", ends_status(&s), left, off);
+	return s.k != 21 || ends_status(&s) != PL_SINGULAR_MASS || fabs(left) > near ||
+		   fabs(off) > (near > 1e-9 ? 0.1 : 1e-3);
 }
 C
 for options in '--scheme taylor' '--scheme radau' '--scheme auto' '--real float'; do
@@ -287,17 +287,17 @@ cat >two_kept.c <<'C'
 #include <stdio.h>
 int main(void)
 {
-    two s;
-    real y[4];
-    double x = 1, end = acos(0.01), t = 0, h = (end - 1)/100000;
-    for (; x < end - h/2; x += h)
-        t += sqrt((cos(x + h/2) - 0.01)/(cos(1) - 0.01))/2.053086*h;
-    two_init(&s);
-    while (two_status(&s) == 0 && s.k < 100)
-        two_step(&s);
-    two_get(&s, y);
-    printf("status %d in step %d, det %g; it is 0 at t = %g\n", two_status(&s), (int)s.k, cos(y[0]) - 0.01, t);
-    return s.k != (unsigned)ceil(t/0.01) || two_status(&s) != PL_SINGULAR_MASS || !(cos(y[0]) > 0.01);
+	two s;
+	real y[4];
+	double x = 1, end = acos(0.01), t = 0, h = (end - 1)/100000;
+	for (; x < end - h/2; x += h)
+		t += sqrt((cos(x + h/2) - 0.01)/(cos(1) - 0.01))/2.053086*h;
+	two_init(&s);
+	while (two_status(&s) == 0 && s.k < 100)
+		two_step(&s);
+	two_get(&s, y);
+	printf("status %d in step %d, det %g; it is 0 at t = %g\n", two_status(&s), (int)s.k, cos(y[0]) - 0.01, t);
+	return s.k != (unsigned)ceil(t/0.01) || two_status(&s) != PL_SINGULAR_MASS || !(cos(y[0]) > 0.01);
 }
 C
 while read -r real scheme; do

@@ -139,7 +139,7 @@ text = open('fmu/modelDescription.xml').read()
 k = re.search(r'<Float64 [^>]*name="k"[^>]*', text).group()
 assert 'variability="tunable"' in k and 'start="300.0"' in k and 'unit="N m/rad"' in k, k
 reference = {n: int(re.search('valueReference="([0-9]*)"', r).group(1)) for r, n in
-             ((m.group(), m.group(1)) for m in re.finditer(r'<Float64 [^>]*name="([^"]*)"[^>]*', text))}
+			 ((m.group(), m.group(1)) for m in re.finditer(r'<Float64 [^>]*name="([^"]*)"[^>]*', text))}
 folder = [f for f in os.listdir('fmu/binaries')][0]
 lib = c.CDLL(os.path.join('fmu/binaries', folder, os.listdir('fmu/binaries/' + folder)[0]))
 make = lib.fmi3InstantiateCoSimulation
@@ -148,19 +148,19 @@ token = re.search('instantiationToken="([^"]*)"', text).group(1).encode()
 one = c.c_void_p(make(b'one', token, None, *[c.c_bool(False)] * 4, None, c.c_size_t(0), None, None, None))
 flag, last = c.c_bool(), c.c_double()
 def put(name, value):
-    assert lib.fmi3SetFloat64(one, (c.c_uint32 * 1)(reference[name]), c.c_size_t(1), (c.c_double * 1)(value),
-                              c.c_size_t(1)) == 0
+	assert lib.fmi3SetFloat64(one, (c.c_uint32 * 1)(reference[name]), c.c_size_t(1), (c.c_double * 1)(value),
+							  c.c_size_t(1)) == 0
 def get(name):
-    got = (c.c_double * 1)()
-    assert lib.fmi3GetFloat64(one, (c.c_uint32 * 1)(reference[name]), c.c_size_t(1), got, c.c_size_t(1)) == 0
-    return got[0]
+	got = (c.c_double * 1)()
+	assert lib.fmi3GetFloat64(one, (c.c_uint32 * 1)(reference[name]), c.c_size_t(1), got, c.c_size_t(1)) == 0
+	return got[0]
 assert lib.fmi3EnterInitializationMode(one, c.c_bool(False), c.c_double(0), c.c_double(0), c.c_bool(False),
-                                       c.c_double(0)) == 0
+									   c.c_double(0)) == 0
 put('torque', 2)
 assert lib.fmi3ExitInitializationMode(one) == 0
 for n in range(40):
-    assert lib.fmi3DoStep(one, c.c_double(n * 0.005), c.c_double(0.005), c.c_bool(True), *[c.byref(flag)] * 3,
-                          c.byref(last)) == 0
+	assert lib.fmi3DoStep(one, c.c_double(n * 0.005), c.c_double(0.005), c.c_bool(True), *[c.byref(flag)] * 3,
+						  c.byref(last)) == 0
 w = math.sqrt(300 * (50 + 100 / 3))
 off = get('twist') / 1000 - 100 / w ** 2 * (1 - math.cos(w * 0.2))
 print(get('twist'), off)
@@ -227,9 +227,9 @@ s = 2j * np.pi * 1.3
 over = np.linalg.solve(s * s * M + 0.3 * s * np.eye(6) + K, np.eye(6)[:, 0])
 print('response', abs(m.response(1.3)[:, 0] - over[[0, 5]]).max())
 try:
-    m.run({'bass': np.zeros(3)})
+	m.run({'bass': np.zeros(3)})
 except ValueError as e:
-    print(e)
+	print(e)
 END
 	PYTHONPATH=$root/host/python PYTHONDONTWRITEBYTECODE=1 "$python" frame.py >log 2>&1 && awk '
 		/^(poles|roof|response)/ && $2 < 1e-10 { good++ }

@@ -64,9 +64,9 @@ static void car_slopes(double t, const double *y, double u, const bool *side, do
 {
 	const double travel = y[1] - y[0], weight = (300 + 40) * 9.81;
 	const double bump = side[0] ? 90000 * (travel - 0.06) : side[1] ? 90000 * (travel + 0.05) : 0;
-        const double suspension = 18000 * travel + 1200 * (y[3] - y[2]) + bump,
-                     tyre = side[2] ? -weight : 180000 * (u - y[1]);
-        (void)t;
+		const double suspension = 18000 * travel + 1200 * (y[3] - y[2]) + bump,
+					 tyre = side[2] ? -weight : 180000 * (u - y[1]);
+		(void)t;
 	dydt[0] = y[2];
 	dydt[1] = y[3];
 	dydt[2] = suspension / 300;
@@ -133,7 +133,7 @@ static void shaken_distance(double t, const double *y, double u, double *g)
 }
 
 static const struct equations gear1 = { 2, 2, gear1_slopes, gear1_distance },
-    two_masses = { 4, 1, two_masses_slopes, two_masses_distance },
+	two_masses = { 4, 1, two_masses_slopes, two_masses_distance },
 	car = { 4, 3, car_slopes, car_distance }, gear3 = { 6, 4, gear3_slopes, gear3_distance },
 	shaken = { 6, 3, shaken_slopes, shaken_distance };
 
@@ -244,50 +244,53 @@ static void compare(const struct subject *p)
 		most[i] = 1e-3;                     /* some start at 0 */
 	struct solver *s = solver_new(p->of, x, 0.1);
 	while (r.steps < lround(p->seconds / m->h) && good) {
-            const double from = (double)r.steps * m->h, to = (double)(r.steps + 1) * m->h,
-                         u = road(p->ramp ? to : from);
-            if (m->inputs)
-                set_input(s, from, p->ramp ? before : u, p->ramp ? (u - before) / m->h : 0);
-            before = u;
-            run_step(&r, m->inputs ? &u : NULL);
-            good = solve_until(s, to);
-            run_state(&r, x);
-            for (int i = 0; i < m->states; i++) {
-                const double expected = N_VGetArrayPointer(s->cvode.y)[i];
-                most[i] = fmax(most[i], fabs(expected));
-                good = close_to(x[i], expected, p->tolerance * most[i], "%s, h = %g, t = %g, %s", p->name, m->h, to,
-                                m->state_names[i]) &&
-                       good;
-                worst = worse(worst, fabs(x[i] - expected) / most[i]);
+			const double from = (double)r.steps * m->h, to = (double)(r.steps + 1) * m->h,
+						 u = road(p->ramp ? to : from);
+			if (m->inputs)
+				set_input(s, from, p->ramp ? before : u, p->ramp ? (u - before) / m->h : 0);
+			before = u;
+			run_step(&r, m->inputs ? &u : NULL);
+			good = solve_until(s, to);
+			run_state(&r, x);
+			for (int i = 0; i < m->states; i++) {
+				const double expected = N_VGetArrayPointer(s->cvode.y)[i];
+				most[i] = fmax(most[i], fabs(expected));
+				good = close_to(x[i], expected, p->tolerance * most[i], "%s, h = %g, t = %g, %s",
+					p->name, m->h, to,
+								m->state_names[i]) &&
+					   good;
+				worst = worse(worst, fabs(x[i] - expected) / most[i]);
 		}
 	}
-        ok(good, "%s, h = %g: CVODE with roots agrees over %g s (largest difference %.2g, tolerance %.0e)", p->name,
-           m->h, p->seconds, worst, p->tolerance);
-        ok(close_to((double)of->crossed(r.state), (double)s->roots, 0, "%s, h = %g: crossings and roots", p->name,
-                    m->h),
-           "%s, h = %g: %ld crossings", p->name, m->h, s->roots);
-        solver_free(s);
+		ok(good, "%s, h = %g: CVODE with roots agrees over %g s (largest difference %.2g, tolerance %.0e)",
+			p->name,
+		   m->h, p->seconds, worst, p->tolerance);
+		ok(close_to((double)of->crossed(r.state), (double)s->roots, 0, "%s, h = %g: crossings and roots",
+			p->name,
+					m->h),
+		   "%s, h = %g: %ld crossings", p->name, m->h, s->roots);
+		solver_free(s);
 	run_free(&r);
 }
 
 int main(void)
 {
-    static const struct subject all[] = {
-        { "gear1", &gear1, 0, 50, 1e-9, false },
-        { "gear1", &gear1, 1, 50, 1e-9, false },
-        { "two_masses", &two_masses, 0, 10, 1e-8, false },
-        { "two_masses", &two_masses, 1, 10, 1e-8, false },
-        { "gear3", &gear3, 0, 5, 1e-9, false },
-        { "gear3", &gear3, 1, 5, 1e-9, false },
-        { "quarter_car_bumps", &car, 0, 3, 1e-8, true },
-        { "quarter_car_bumps", &car, 1, 3, 1e-8, true },
-        { "quarter_car_bumps", &car, 2, 3, 1e-8, true },
-        { "held", &car, 0, 3, 1e-8, false },
-        { "held", &car, 1, 3, 1e-8, false },
-        { "held", &car, 2, 3, 1e-8, false },
-        { "shaken", &shaken, 0, 4, 1e-9, false },
-    };
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++)
-        compare(&all[i]);
-    return tap_end();
+	static const struct subject all[] = {
+		{ "gear1", &gear1, 0, 50, 1e-9, false },
+		{ "gear1", &gear1, 1, 50, 1e-9, false },
+		{ "two_masses", &two_masses, 0, 10, 1e-8, false },
+		{ "two_masses", &two_masses, 1, 10, 1e-8, false },
+		{ "gear3", &gear3, 0, 5, 1e-9, false },
+		{ "gear3", &gear3, 1, 5, 1e-9, false },
+		{ "quarter_car_bumps", &car, 0, 3, 1e-8, true },
+		{ "quarter_car_bumps", &car, 1, 3, 1e-8, true },
+		{ "quarter_car_bumps", &car, 2, 3, 1e-8, true },
+		{ "held", &car, 0, 3, 1e-8, false },
+		{ "held", &car, 1, 3, 1e-8, false },
+		{ "held", &car, 2, 3, 1e-8, false },
+		{ "shaken", &shaken, 0, 4, 1e-9, false },
+	};
+	for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+		compare(&all[i]);
+	return tap_end();
 }

@@ -95,21 +95,21 @@ while IFS='|' read -r name equation; do
 typedef REAL real;
 int main(void)
 {
-    static const struct { real k; int status; } at[] = {
-        { 12.5, 0 }, { 100, 0 }, { 12.4999, PL_OUT_OF_RANGE }, { (real)100.001, PL_OUT_OF_RANGE },
-        { -50, PL_OUT_OF_RANGE }, { 50, 0 }
-    };
-    int wrong = 0;
-    for (int i = 0; i < 6; i++) {
-        m_coeffs before = m_nominal, c = m_nominal;
-        const real params[2] = { (real)0.5, at[i].k };
-        const int status = m_retune(&c, params, (real)M_H);
-        const int stays = memcmp(&c, &before, sizeof c) == 0;
-        printf("k = %.9g: %d, expected %d; coefficients %s\n", (double)at[i].k, status, at[i].status,
-            stays ? "as they were" : "new");
-        wrong += status != at[i].status || (status != 0 && !stays) || (at[i].k != 50 && status == 0 && stays);
-    }
-    return wrong != 0;
+	static const struct { real k; int status; } at[] = {
+		{ 12.5, 0 }, { 100, 0 }, { 12.4999, PL_OUT_OF_RANGE }, { (real)100.001, PL_OUT_OF_RANGE },
+		{ -50, PL_OUT_OF_RANGE }, { 50, 0 }
+	};
+	int wrong = 0;
+	for (int i = 0; i < 6; i++) {
+		m_coeffs before = m_nominal, c = m_nominal;
+		const real params[2] = { (real)0.5, at[i].k };
+		const int status = m_retune(&c, params, (real)M_H);
+		const int stays = memcmp(&c, &before, sizeof c) == 0;
+		printf("k = %.9g: %d, expected %d; coefficients %s\n", (double)at[i].k, status, at[i].status,
+			stays ? "as they were" : "new");
+		wrong += status != at[i].status || (status != 0 && !stays) || (at[i].k != 50 && status == 0 && stays);
+	}
+	return wrong != 0;
 }
 EOS
 		"$plgen" --real $real m.spec >m.c 2>log &&

@@ -13,30 +13,30 @@ here=$root/tests/charts/own
 	awk -v by="${STRIDE:-1}" 'NR % by == 0')
 
 chart() {
-    (cd "$root" && exec sh bench/charts/own/own.sh -q "$build/plgen" "$@") >log 2>&1
+	(cd "$root" && exec sh bench/charts/own/own.sh -q "$build/plgen" "$@") >log 2>&1
 }
 
 for spec; do
-    name=$(basename "$spec" .spec)
-    chart "$spec" "$work"
-    result $? "$name: charted"
-    awk -v name="$name" -f "$root/bench/charts/csv.awk" -f "$here/own.awk" "$name.csv" >log 2>&1
-    result $? "$name: errors and orders of plgen's steps and of peers"
-    {
-        grep -q '</svg>' "$name.svg" && grep -q -e '<use ' "$name.svg" || echo "the picture is not whole"
-        [ "$(grep -c '^error below 1e-[0-9]*:' "$name.txt")" = 4 ] || cat "$name.txt"
-    } >log 2>&1
-    [ ! -s log ]
-    result $? "$name: a picture, and a verdict for each wanted error"
+	name=$(basename "$spec" .spec)
+	chart "$spec" "$work"
+	result $? "$name: charted"
+	awk -v name="$name" -f "$root/bench/charts/csv.awk" -f "$here/own.awk" "$name.csv" >log 2>&1
+	result $? "$name: errors and orders of plgen's steps and of peers"
+	{
+		grep -q '</svg>' "$name.svg" && grep -q -e '<use ' "$name.svg" || echo "the picture is not whole"
+		[ "$(grep -c '^error below 1e-[0-9]*:' "$name.txt")" = 4 ] || cat "$name.txt"
+	} >log 2>&1
+	[ ! -s log ]
+	result $? "$name: a picture, and a verdict for each wanted error"
 done
 
 # refused NAME STATUS TEXT ARGUMENT...: that text is said
 refused() {
-    what=$1 text=$2
-    shift 2
-    chart "$@"
-    [ $? -eq 1 ] && grep -qF -e "$text" log
-    result $? "refused: $what"
+	what=$1 text=$2
+	shift 2
+	chart "$@"
+	[ $? -eq 1 ] && grep -qF -e "$text" log
+	result $? "refused: $what"
 }
 printf '%s\n' 'model unknown' 'coord x' "x'' + x = z" 'step 0.1' >unknown.spec
 printf '%s\n' 'model third' 'coord x' 'input u hold third' "x'' + x = u" 'step 0.1' >third.spec
