@@ -379,6 +379,9 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
     return (sum[0] + sum[2]) + (sum[1] + sum[3]);
 }
 
+/* Of a step that meets one guard; bundles have macros up to the text that they are for. */
+enum { MET_SIZE = 8, MET_TERMS = 17 };
+
 #define PL(name) unmet_##name
 #define PL_SIZE m->size
 #define PL_CAPPED 0
@@ -387,8 +390,8 @@ static PL_APART double sum_of(int n, const double *row, const double *x)
 #define PL_EACH
 #define PL_MEETS 1
 #define PL_ENTRIES
-#define PL_MOST_SIZE 8
-#define PL_MOST_TERMS 17
+#define PL_MOST_SIZE MET_SIZE
+#define PL_MOST_TERMS MET_TERMS
 #define PL_DOT(row, x) sum_of(m->size, row, x)
 #define PL_ACTS(i, j) 1
 #include "unmet.h"
@@ -409,7 +412,7 @@ void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl
     double *const size = work + m->size;
     int i;
     if (tau < m->h || !unmet_keeps_all(m, c->region, x, work, size, size + m->size)) {
-        if (tau < m->h || m->size > PL_MOST_SIZE || m->degree >= PL_MOST_TERMS ||
+        if (tau < m->h || m->size > MET_SIZE || m->degree >= MET_TERMS ||
             !unmet_meets_one(m, x, c, crossing, work)) {
             pl_guards_advance(m, tau, x, c, crossing, work);
         }
