@@ -273,7 +273,7 @@ static PL_APART void PL(powers)(const pl_guards *m, int which, const double *x, 
 }
 
 /* y: x after s h, what is gained before x, so that little of it is lost.  size: |y| */
-static void PL(go_to)(const pl_guards *m, const double d[PL_MOST_TERMS][PL_MOST_SIZE], double s, double *y,
+static void PL(go_to)(const pl_guards *m, double d[PL_MOST_TERMS][PL_MOST_SIZE], double s, double *y,
                       double *size)
 {
     double even[PL_MOST_SIZE], odd[PL_MOST_SIZE]; /* of two chains neither waits for the other */
@@ -299,7 +299,7 @@ static void PL(go_to)(const pl_guards *m, const double d[PL_MOST_TERMS][PL_MOST_
 
 /* Where a guard comes to its limit, from below to above, at its only root: it rises all the way, or bends one way all
  * the way.  2: that is not certain */
-static double PL(root_of)(const pl_guards *m, int k, const double d[PL_MOST_TERMS][PL_MOST_SIZE], const PL(course) *g)
+static double PL(root_of)(const pl_guards *m, int k, double d[PL_MOST_TERMS][PL_MOST_SIZE], const PL(course) *g)
 {
     const double *const row = m->guards.row + m->guard[k].row * PL_SIZE, rise = g->to - g->from;
     double c[PL_MOST_TERMS], slopes = 0.0, bends = 0.0, s = -g->from / rise, step;
@@ -404,7 +404,7 @@ static int PL(first_met)(const pl_guards *m, int region, const double *x, const 
 
 /* Whether a guard that begins at its limit certainly leaves it over h times L, or does not rise above it by more than
  * rounding: by a parabola above it, as what is let go may begin with no acceleration */
-static int PL(leaves)(const pl_guards *m, int k, const double d[PL_MOST_TERMS][PL_MOST_SIZE], double L,
+static int PL(leaves)(const pl_guards *m, int k, double d[PL_MOST_TERMS][PL_MOST_SIZE], double L,
                       const PL(course) *g)
 {
     const double *const row = m->guards.row + m->guard[k].row * PL_SIZE;
