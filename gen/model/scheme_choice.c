@@ -373,11 +373,11 @@ static bool goes_by_series(const struct building *b)
 	       !b->request->loads_left;
 }
 
-/* Friction and impacts that no scheme was asked for, and that have more regions than exact can take */
-static bool is_crowded(struct building *b)
+/* Clearances, friction and impacts that no scheme was asked for, and that have more regions than exact can take */
+static bool is_crowded(struct building *b, bool linear)
 {
 	return !b->model->request.at.scheme.source && is_piecewise_linear(b) && !impacts_change(b) &&
-	       (b->model->contacts.impacts > 0 || holds_friction(b)) && !b->request->solution &&
+	       (!linear || b->model->contacts.impacts > 0 || holds_friction(b)) && !b->request->solution &&
 	       b->spec->tuned.count == 0 && !b->spec->request.cached && has_too_many_regions(b);
 }
 
@@ -443,7 +443,7 @@ static bool choose_scheme(struct building *b)
 		return false;
 	if (!linear && holds_friction(b) && !goes_by_regions(b) && !goes_by_series(b))
 		return statement_guard(report_friction_stands, b);
-	b->crowded = is_crowded(b);
+	b->crowded = is_crowded(b, linear);
 	const bool exact = !constrained && is_piecewise_linear(b);
 	if ((!linear || constrained) && !model->request.at.scheme.source && !b->request->solution && !exact) {
 		model->scheme = scheme_of_choice(b);

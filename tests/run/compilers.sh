@@ -43,7 +43,7 @@ for run in models/bouncing_ball.spec models/brake.spec models/impact_oscillator.
 done
 
 # takes RUN STEPS MOST: so many steps take at most so many instructions. Where bounds show one event of a contact in a
-# step, no search is made for it: by searches they are half as many again.
+# step, there is no search: by searches they are half as many again.
 takes() {
 	chosen "$1 instructions" || return 0
 	{ printf '#include "model.h"\nint main(void)\n{\n\tstatic made s;\n\tmade_init(&s);\n'

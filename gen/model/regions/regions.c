@@ -561,6 +561,7 @@ static struct switching *regions_found(struct building *b, int rows, int *row, b
 	s->segments = rows_change(b, rows, row) ? b->model->system.segments : 1;
 	while (!look(b, s, &known))
 		;
+	b->crowded = cached && s->many;
 	if (cached && (s->many || !may_cache(b, s)))
 		refuse_cache(b, s, s->many ? s->function[s->functions - 1].node : b->spec->request.cached,
 			     s->many ? "regions have no number below 2^31"
