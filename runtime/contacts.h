@@ -289,16 +289,19 @@ static uint32_t seat(const contacts *m, instant *at, uint32_t set)
 #ifndef RESTING
 static void stop_all(const contacts *m, instant *at, uint32_t set)
 {
+    real slow = 0;
     int k, sweeps, moving = 1;
     for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
-        moving = 0;
+        real fastest = 0;
         for (k = 0; k < m->impacts; k++) {
             if (set >> k & 1) {
-                moving |= magnitude(speed_of(m, at, k)) > 0;
+                fastest = larger(fastest, magnitude(speed_of(m, at, k)));
                 stop(m, at, k);
                 put_on(m, at, k);
             }
         }
+        slow = sweeps == 0 ? CALM * CALM * fastest : slow;
+        moving = fastest > slow;
     }
 }
 #endif

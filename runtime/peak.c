@@ -2,7 +2,7 @@
 /* The largest size of an output within a step: a bound that most steps stay below, else its Taylor polynomial. */
 #include "real.h"
 
-enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96, MOST_TRIES = 60 };
+enum { MOST_TERMS = 48, LOOKS_A_TERM = 24, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96, MOST_TRIES = 60 };
 
 /* Of a step: a top is found once it is known so closely, where it is flat to rounding */
 #define NEAREST (REAL_DIGITS > 30 ? (real)1e-8 : (real)2e-4)
@@ -11,6 +11,11 @@ enum { MOST_TERMS = 48, MOST_HALVINGS = 20, BEND_PARTS = 4, MOST_ENTRIES = 96, M
 static real larger(real a, real b)
 {
     return a > b ? a : b;
+}
+
+static real smaller(real a, real b)
+{
+    return a < b ? a : b;
 }
 
 static real product(int n, const real *a, const real *b)
@@ -71,13 +76,23 @@ static void values_at(const taylor *p, real s, real *value)
     }
 }
 
+static real third_at(const taylor *p, real s)
+{
+    real value = 0;
+    int k;
+    for (k = p->degree; k >= 3; k--) {
+        value = value * s + (real)(k * (k - 1) * (k - 2)) * p->c[k];
+    }
+    return value;
+}
+
 /* |p| at the root of p' in a .. b, where p'' has one sign: Newton's method from where the chord of p' is 0.  Off by
  * `off` p is off by off^2/2 p''. */
 static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b, real *at)
 {
     real s = a + (b - a) * (slope_a / (slope_a - slope_b)), value[3];
     int k;
-    for (k = 0; k < 6; k++) {
+    for (k = 0; k < 12; k++) {
         real next, off;
         values_at(p, s, value);
         next = s - value[1] / value[2];
@@ -92,27 +107,38 @@ static real extreme(const taylor *p, real a, real b, real slope_a, real slope_b,
     return pl_magnitude(value[0]);
 }
 
-/* Between two points p is off its chord by at most (b - a)^2/8 max|p''|.  Where that may pass `peak`: one sign of p''
- * in between leaves one extreme at most; else half the interval. */
+/* Between two points p is off its chord by at most (b - a)^2/8 max|p''|, all in all and, closer, between them.  Where
+ * that may pass `peak` by more than rounding, and p' may change its sign: one sign of p'' in between leaves one extreme
+ * at most; else half the interval.  Beyond LOOKS_A_TERM intervals for each term their ends count. */
 static real largest(const taylor *p, real peak, real *at)
 {
     const real least = REAL_DIGITS > 30 ? (real)1 / (1 << 26) : (real)1 / (1 << 12);
     real a = 0, width = 1, at_a[3], at_b[3], middle[3];
+    int looks = 0;
     values_at(p, a, at_a);
     while (a < 1) {
-        const real b = a + width, bend = width * width / 8 * p->second;
+        const real b = a + width, over = width * width / 8;
+        real ends;
         values_at(p, b, at_b);
-        if (width > least && !(larger(pl_magnitude(at_a[0]), pl_magnitude(at_b[0])) + bend <= peak)) {
+        ends = larger(pl_magnitude(at_a[0]), pl_magnitude(at_b[0]));
+        if (width > least && looks < LOOKS_A_TERM * p->degree && !(ends + over * p->second <= peak)) {
+            real turn, bend;
+            looks++;
             values_at(p, a + width / 2, middle);
-            if (pl_magnitude(middle[2]) < p->third * width / 2) {
-                width /= 2;
-                continue;
-            }
-            if ((at_a[1] < 0) != (at_b[1] < 0)) {
-                real top_at;
-                const real top = extreme(p, a, b, at_a[1], at_b[1], &top_at);
-                *at = top > peak ? top_at : *at;
-                peak = larger(peak, top);
+            turn = smaller(p->third, pl_magnitude(third_at(p, a + width / 2)) + p->fourth * width / 2) * width / 2;
+            bend = pl_magnitude(middle[2]) + turn;
+            if (!(pl_magnitude(middle[1]) > bend * width / 2) &&
+                !(ends + over * bend <= peak + 4 * REAL_EPSILON * peak)) {
+                if (pl_magnitude(middle[2]) < turn) {
+                    width /= 2;
+                    continue;
+                }
+                if ((at_a[1] < 0) != (at_b[1] < 0)) {
+                    real top_at;
+                    const real top = extreme(p, a, b, at_a[1], at_b[1], &top_at);
+                    *at = top > peak ? top_at : *at;
+                    peak = larger(peak, top);
+                }
             }
         }
         a = b;

@@ -37,7 +37,7 @@ double worst_of_step(const struct step *step, int target, bool single);
 const char *worst_text(const struct step *step);             /* 4934 on cortex-m0, ... */
 void check_worst(const struct step *step);                   /* leaves the statement where a budget is not met */
 
-/* ---- worst_series.c: the most that a step by a series of fixed order does ---- */
+/* ---- worst_counts.c: the most that a step by a series, a collocation, with peaks, changes or events does ---- */
 
 /* Of its expansions products, sums, quotients, coefficients that are kept; functions of loads; of a search for events
  * terms of polynomials that are looked at, rows of these, parts; expansions; with a tolerance columns that are
@@ -47,5 +47,27 @@ enum { WORST_PRODUCTS, WORST_SUMS, WORST_QUOTIENTS, WORST_KEPT, WORST_FORCED, WO
 const char *unbounded_series(const struct step *step);       /* as unbounded_text */
 double worst_of_calls(const struct step *step, int target);  /* in an expansion; NONE: it is not known */
 void count_worst_series(const struct step *step, double part[WORST_SERIES]);
+/* Of a collocation: of all iterations products, sums, unknowns and states; functions of loads; terms of polynomials;
+ * internal steps */
+enum { NEWTON_PRODUCTS, NEWTON_SUMS, NEWTON_ITERATIONS, NEWTON_FORCED, NEWTON_FINISHED, NEWTON_TRIES,
+       WORST_COLLOCATION };
+void count_worst_collocation(const struct step *step, double part[WORST_COLLOCATION]);
+
+/* Of a step in which they change (changes.h): products of its series, their rows, changes, entries of A */
+enum { CHANGE_PRODUCTS, CHANGE_ROWS, CHANGES, CHANGE_ENTRIES, CHANGE };
+void count_changes(const struct step *step, double part[CHANGE]);
+
+/* Of a look inside a step for larger values (peak.c): products of its polynomials' terms; terms, of all entries; terms
+ * of polynomials that are looked at; entries of A and of x; peaks */
+enum { PEAK_PRODUCTS, PEAK_TERMS, PEAK_LOOKED, PEAK_LISTED, PEAKS, PEAK };
+void count_peak_looks(const struct step *step, bool single, double part[PEAK]);
+
+/* Of a step with events, by the limits of the runtime: functions of loads; the step without an event; moves by Taylor
+ * polynomials from event to event, their terms, entries of A and of x; terms of switching functions or guards; looks at
+ * these for roots; moves before the search; rows over x; what rests, tried in all combinations; products with matrices;
+ * impacts; a step; stops, until what touches is at rest */
+enum { SEARCH_FORCED, SEARCH_CLEAR, SEARCH_MOVED, SEARCH_SUMMED, SEARCH_FOLLOWED, SEARCH_LOOKED, SEARCH_CHECKED,
+       SEARCH_ROWS, SEARCH_RESTING, SEARCH_SQUARES, SEARCH_IMPACTS, SEARCH_STEP, SEARCH_SWEPT, SEARCH };
+void count_search(const struct step *step, bool single, double part[SEARCH]); /* but for functions of loads */
 
 #endif

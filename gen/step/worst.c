@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The most instructions that a step takes. Code without a branch that depends on the state takes the sum of what its
- * operations take at most; a search, and a series as long as its tolerance lets it be, that of their limits, each taken
- * to the full; of Newton's method there is no such sum. */
+ * operations take at most; a search, a series as long as its tolerance lets it be and Newton's method that of their
+ * limits, each taken to the full. */
 #include "cost.h"
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
-#include "model/reads.h"
+#include "step/collocation/collocation.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 #include "step/regions/guards.h"
@@ -25,52 +25,20 @@ static bool holds_longer(const struct linear *system)
 	return longer;
 }
 
-/* Does a bounce of one change the speed of the other? Those of one switching function are at different places. */
-static bool bounces_meet(const struct model *model, const struct impact *one, const struct impact *other)
-{
-	const struct form *speed = other->in->speed;
-	bool meet = false;
-	if (!one->bounces || !other->bounces)
-		return true;
-	const struct reads r = reads_of(model, 1, &speed);
-	for (int q = 0; q < model->system.n && one->in->function != other->in->function; q++) {
-		const int velocity = model->system.velocity[q];
-		meet = meet || (velocity >= 0 && r.state[velocity] && is_moved_by(one, q));
-	}
-	return meet;
-}
-
-static bool impacts_meet(const struct model *model)
-{
-	const struct model_contacts *c = &model->contacts;
-	bool meet = false;
-	for (int i = 0; i < c->impacts; i++)
-		for (int k = 0; k < c->impacts; k++)
-			meet = meet || (i != k && bounces_meet(model, &c->impact[i], &c->impact[k]));
-	return meet;
-}
-
 static const char *unbounded_search(const struct step *step)
 {
-	const struct switching *s = step->model->switching;
 	const char *why = NULL;
-	bool pieces = false;
-	for (int k = 0; k < step->branches && !step->regions.parts; k++)
-		pieces = pieces || step->branch[k].halvings > 0;
 	for (int p = 0; p < step->regions.parts && !why; p++)
 		why = unbounded_search(step->regions.part[p]);
 	return why			 ? why
-	       : pieces			 ? "beside a fast pole a step goes in pieces, a smaller step in one"
 	       : caches_regions(step->model) ? "matrices of regions are made when they are met"
 	       : step->is.two_words	 ? "the search is in two words"
-	       : s->segments > 1	 ? "loads change their formula inside a step"
-	       : impacts_meet(step->model)	 ? "contacts that act on each other come to rest by sweeps"
 					 : NULL;
 }
 
 static const char *unbounded_calls(const struct step *step)
 {
-	const bool known = step->taylor.expansion && worst_of_calls(step, 0) >= 0;
+	const bool known = step->collocation || (step->taylor.expansion && worst_of_calls(step, 0) >= 0);
 	return step->program->calls == 0 || known    ? NULL
 	       : step->model->request.own_math ? "it calls functions that take long for some numbers"
 					       : "it calls functions of <math.h>, not of --math own";
@@ -85,12 +53,11 @@ const char *unbounded_text(const struct step *step)
 	const char *calls = search || series ? NULL : unbounded_calls(step);
 	return search				     ? search
 	       : series			     ? series
-	       : system->segments > 1	     ? "loads change their formula inside a step"
 	       : model->written->ranges > 0 && model->written != model
 		       ? "the states as written are compared with their ranges"
 	       : model->delays		     ? "the step of a core is taken in parts"
-	       : peak_outputs(model) > 0     ? "peaks inside a step are searched"
-	       : step->modal		     ? "modes are stepped in loops of their own"
+	       : peak_outputs(model) > 0 && peaks_by_values(step)
+		       ? "peaks of what is known by its values alone are searched"
 	       : step->refresh		     ? "a refresh evaluates functions of loads in some steps"
 	       : calls			     ? calls
 	       : holds_longer(system)	     ? "inputs go through more than two samples"
@@ -114,51 +81,6 @@ static struct parts parts_of(const struct step *step)
 	p.flushed = flush && flush->decaying > 0 && !flush->beside ? system->states : 0;
 	p.compared = flush && flush->beside ? system->states : 0;
 	return p;
-}
-
-/* ---- a search ---- */
-
-/* Of a step with events, by the limits of the runtime: functions of loads; the step without an event; moves by Taylor
- * polynomials from event to event, their terms, entries of A and of x; terms of switching functions or guards; looks at
- * these for roots; moves before the search; rows over x; what rests, tried in all combinations; products with matrices;
- * impacts; a step */
-enum { FORCED, CLEAR, MOVED, SUMMED, FOLLOWED, LOOKED, CHECKED, ROWS, RESTING, SQUARES, IMPACTS, STEP, SEARCH };
-
-/* Entries that are not 0, of the linear system that has most */
-static int most_entries(const struct step *step)
-{
-	int most = 0;
-	for (int k = 0; k < step->branches; k++) {
-		SCRATCH double *A = slopes_of(step, k);
-		int count = 0;
-		for (int i = 0; i < step->layout.size * step->layout.size; i++)
-			count += A[i] != 0;
-		most = count > most ? count : most;
-	}
-	return most;
-}
-
-static void search_of(const struct step *step, bool single, double part[SEARCH])
-{
-	enum { MOST_RESTING = 6 };      /* MOST of impacts.h */
-	const struct switching *s = step->model->switching;
-	const struct program *p = step->program;
-	const bool guards = has_events(s), few = step->regions.event_check.fast_path && !single;
-	const double size = step->layout.size, degree = step->series.degree, entries = most_entries(step);
-	const double events = max_events(step->model), moves = events + 3, rows = s->functions * (guards ? 2 : 1);
-	const struct parts parts = parts_of(step);
-	part[FORCED] = parts.forcings + parts.growths;
-	part[CLEAR] = p->multiplications + p->additions;
-	part[MOVED] = moves * degree * entries;
-	part[SUMMED] = moves * degree * size;
-	part[FOLLOWED] = moves * rows * degree;
-	part[LOOKED] = (max_splits(step->model) + moves * rows) * degree;
-	part[CHECKED] = few ? event_checks(step->model) * degree * entries : 0;
-	part[ROWS] = (moves + s->impacts * events) * rows * size;
-	part[RESTING] = guards ? (events + 1) * pow(3, fmin(s->functions, MOST_RESTING)) * size * size : 0;
-	part[SQUARES] = moves * size * size;
-	part[IMPACTS] = (events + 1) * s->impacts;
-	part[STEP] = 1;
 }
 
 /* ---- what each part takes ---- */
@@ -199,18 +121,44 @@ static const double ranged[][2][2] = {
 	{ { 150, 0 }, { 105, 0 } }, { { 105, 0 }, { 22, 0 } }, { { 20, 2 }, { 22, 0 } }
 };
 
-/* The same of searches, to the longest steps beside breakpoints, grazing, in chains of impacts of 12 models: with
- * friction and impacts as often as much as on a Cortex-M4 in float, in double, in float */
-static const double searches[][2][SEARCH] = {
-	{ { 29155, 785, 952, 1428, 850, 2142, 714, 3570, 0, 178, 0, 1020 },
-	  { 3000, 350, 315, 374, 300, 250, 0, 1400, 0, 70, 0, 500 } },
-	{ { 8575, 231, 280, 420, 250, 630, 210, 1050, 0, 52.5, 0, 300 },
-	  { 805, 7, 10.1, 29.7, 20, 13.5, 0, 105, 0, 21, 0, 100 } },
-	{ { 1680, 4.2, 5.4, 26.7, 18, 12, 14, 105, 0, 21, 0, 100 },
-	  { 829, 7.2, 10.4, 30.6, 20.6, 14, 0, 108, 0, 21.6, 0, 103 } }
+/* In modes: a product with its sum; of a state itself compared, or looked at; an input; a step. To the longest of 6 */
+enum { MODAL = 5 };
+static const double modes[][2][MODAL] = {
+	{ { 458.3, 8, 54.8, 541, 100 }, { 203, 11, 20, 369, 50 } },
+	{ { 128.2, 8, 15, 224, 50 }, { 3.7, 37.9, 12, 21.8, 10 } },
+	{ { 3, 38.4, 12, 35.3, 10 }, { 3.7, 39, 12, 22.8, 10 } }
 };
-static const double contacts[SEARCH] = { 230, 7, 17.5, 28.7, 70, 13.5, 0, 130, 3.5, 21, 4023, 100 };
-static const double contacts_take[][2] = { { 42, 15.5 }, { 13, 1 }, { 1.4, 1.03 } };
+
+/* To the longest steps of 6 models in which loads change, and of 6 with peaks */
+static const double changes[][2][CHANGE] = {
+	{ { 189.8, 1048, 45860, 856.1 }, { 125, 410.3, 37170, 190.7 } },
+	{ { 58.5, 323.1, 23150, 189.6 }, { 7.5, 14, 2390, 4 } },
+	{ { 6.5, 12.2, 2640, 4 }, { 7.5, 14, 2375, 4 } }
+};
+static const double looks_inside[][2][PEAK] = {
+	{ { 450, 900, 1650, 14, 5600 }, { 165, 330, 297, 14, 2200 } },
+	{ { 120, 240, 481, 8, 1600 }, { 6, 12, 19, 4, 80 } },
+	{ { 37.5, 12, 18.2, 4, 80 }, { 6, 12, 20.6, 4, 80 } }
+};
+
+/* Of searches, to the longest steps beside breakpoints, grazing, in chains of impacts of 13 models, and of 31 with
+ * friction and impacts: 12 % above and more, where paths that were found on one target count on all */
+static const double searches[][2][SEARCH] = {
+	{ { 14200, 1970, 758, 2820, 298, 750, 250, 8930, 0, 445, 0, 1020 },
+	  { 1850, 875, 111, 933, 105, 87.5, 0, 817, 0, 175, 0, 500 } },
+	{ { 3170, 578, 700, 148, 87.5, 221, 105, 2630, 0, 132, 0, 300 },
+	  { 301, 17.5, 3.54, 43.4, 22.1, 4.73, 0, 222, 0, 7.35, 0, 226 } },
+	{ { 631, 10.5, 1.89, 54.3, 27.8, 4.2, 4.9, 263, 0, 29.5, 0, 950 },
+	  { 298, 18, 3.64, 44.4, 7.21, 4.9, 0, 143, 0, 11.9, 0, 1130 } }
+};
+static const double contacts[][2][SEARCH] = {
+	{ { 13800, 132, 1750, 535, 1320, 252, 0, 2440, 65.3, 391, 93400, 151000, 8780 },
+	  { 1580, 41.8, 747, 857, 418, 80.7, 0, 777, 20.9, 896, 103000, 48100, 2820 } },
+	{ { 3100, 40.4, 598, 167, 404, 77.9, 0, 750, 20.3, 122, 33500, 46500, 2730 },
+	  { 332, 19.3, 38.4, 79, 54.7, 5.21, 0, 50.1, 1.36, 8.09, 4120, 3110, 182 } },
+	{ { 695, 27, 9.44, 36.6, 212, 7.29, 0, 70.1, 1.9, 11.4, 2610, 4350, 255 },
+	  { 328, 20, 14, 81.4, 93.3, 5.36, 0, 51.6, 1.4, 8.34, 3820, 3210, 187 } }
+};
 
 /* Of series of fixed order, to the longest steps of 22 models; of those with events, to those of 21 */
 static const double expansions[][2][WORST_SERIES] = {
@@ -232,6 +180,13 @@ static const double searched[][2][WORST_SERIES] = {
 	{ { 205, 255, 205, 0, 7920, 1250, 1000, 74000 }, { 82, 122, 82, 0, 700, 520, 420, 31500 } },
 	{ { 42, 90, 42, 0, 2100, 320, 250, 32000 }, { 1.6, 2.2, 1.4, 0, 680, 12.2, 15.2, 1930 } },
 	{ { 1.6, 2.25, 1.4, 0, 690, 12.5, 16, 2850 }, { 1.65, 2.27, 1.45, 0, 695, 12.5, 15.6, 1990 } }
+};
+
+/* Of a collocation, to the longest of 4; of rates beside a series, of what an iteration takes */
+static const double newtons[][2][WORST_COLLOCATION + 1] = {
+	{ { 340, 260, 100, 7920, 600, 9000, 340 }, { 140, 150, 50, 233, 400, 5000, 140 } },
+	{ { 75, 100, 30, 2100, 120, 2000, 75 }, { 2.2, 3.2, 5, 186, 10, 100, 2.4 } },
+	{ { 2.2, 3, 5, 418, 5, 100, 2.4 }, { 2.2, 3.2, 5, 180, 10, 100, 2.4 } }
 };
 
 const char *worst_target(int target)
@@ -257,12 +212,14 @@ static double sum_of(int count, const double *each, const double *times)
 
 static double worst_of_search(const struct step *step, int target, bool single, double forced)
 {
-	double part[SEARCH];
-	search_of(step, single, part);
-	part[FORCED] = forced;
-	return has_events(step->model->switching)
-		       ? ceil(contacts_take[target][single] * sum_of(SEARCH, contacts, part))
-		       : sum_of(SEARCH, searches[target][single], part);
+	double part[SEARCH], changing[CHANGE];
+	count_search(step, single, part);
+	count_changes(step, changing);
+	part[SEARCH_FORCED] = forced;
+	/* how far off they are is waits where the step begins and behind each, too */
+	const double waits = loads_change(&step->model->system) ? changing[CHANGES] + 2 : 0;
+	return sum_of(SEARCH, (has_events(step->model->switching) ? contacts : searches)[target][single], part) +
+	       waits * changes[target][single][CHANGES];
 }
 
 static double worst_of_plain(const struct step *step, int target, bool single)
@@ -272,18 +229,26 @@ static double worst_of_plain(const struct step *step, int target, bool single)
 	const double plain[PLAIN] = { p.multiplications, p.additions, p.forcings, p.growths, p.states, p.flushed,
 				      p.inputs, 1, more };
 	const double loops[LOOPS] = { fmax(p.multiplications, p.additions), p.compared, 1 };
-	const double *each = bounds[target].plain[single];
-	return step->program->loops ? ceil(sum_of(LOOPS, bounds[target].loops[single], loops) + each[2] * p.forcings +
-					   each[3] * p.growths + each[6] * p.inputs)
-				    : sum_of(PLAIN, each, plain);
+	const double modal[MODAL] = { p.multiplications, p.compared, p.flushed, p.inputs, 1 };
+	const double *each = bounds[target].plain[single], functions = each[2] * p.forcings + each[3] * p.growths;
+	return step->modal ? ceil(sum_of(MODAL, modes[target][single], modal) + functions)
+	       : step->program->loops
+		       ? ceil(sum_of(LOOPS, bounds[target].loops[single], loops) + functions + each[6] * p.inputs)
+		       : sum_of(PLAIN, each, plain);
 }
 
 static double worst_of_linear(const struct step *step, int target, bool single)
 {
 	const double worst = worst_of_plain(step, target, single), *more = tuned[target][single];
-	return step->model->params.tuning
-		       ? ceil(more[step->program->loops] * worst + more[2] + more[3] * parts_of(step).ramps)
-		       : worst;
+	double changing[CHANGE], peaks[PEAK];
+	count_changes(step, changing);
+	count_peak_looks(step, single, peaks);
+	/* with peaks functions of loads are computed at both ends */
+	const double other = sum_of(CHANGE, changes[target][single], changing) +
+			     sum_of(PEAK, looks_inside[target][single], peaks) + (peaks[PEAKS] > 0 ? worst : 0);
+	return other + (step->model->params.tuning ? ceil(more[step->program->loops] * worst + more[2] +
+							  more[3] * parts_of(step).ramps)
+						   : worst);
 }
 
 /* Of independent parts, of which each has its own events, all of them; loads are those of the whole. */
@@ -317,11 +282,25 @@ static double worst_of_series(const struct step *step, int target, bool single)
 	return sum_of(WORST_SERIES, each, part) + shortened + part[WORST_EXPANSIONS] * worst_of_calls(step, target);
 }
 
+/* Of a series beside it whichever takes longer */
+static double worst_of_collocation(const struct step *step, int target, bool single)
+{
+	double part[WORST_COLLOCATION];
+	count_worst_collocation(step, part);
+	const double newton = sum_of(WORST_COLLOCATION, newtons[target][single], part);
+	return step->taylor.expansion ? fmax(worst_of_series(step, target, single), newton) +
+						ceil(newtons[target][single][WORST_COLLOCATION] * part[NEWTON_TRIES] *
+						     (step->collocation->iteration.multiplications +
+						      step->collocation->iteration.additions))
+				      : newton;
+}
+
 double worst_of_step(const struct step *step, int target, bool single)
 {
 	const struct model *model = step->model;
 	const double *each = ranged[target][single];
-	const double worst = step->taylor.expansion ? worst_of_series(step, target, single)
+	const double worst = step->collocation	    ? worst_of_collocation(step, target, single)
+			     : step->taylor.expansion ? worst_of_series(step, target, single)
 			     : model->switching	    ? worst_of_regions(step, target, single)
 						    : worst_of_linear(step, target, single);
 	return model->written->ranges == 0
@@ -335,7 +314,8 @@ const char *worst_text(const struct step *step)
 	enum { MANY = 16 };
 	const char *text = "";
 	const struct truncation *truncation = &step->model->truncation;
-	const int substeps = step->taylor.expansion && truncation->adaptive ? truncation->substeps : 0;
+	const bool internal = step->collocation || (step->taylor.expansion && truncation->adaptive);
+	const int substeps = internal ? truncation->substeps : 0;
 	for (int t = 0; worst_target(t); t++)
 		text = format("%s%s%.0f on %s", text, !*text ? "" : worst_target(t + 1) ? ", " : " and ",
 			      worst_of_step(step, t, step->model->request.single), worst_target(t));
@@ -368,7 +348,7 @@ static const char *fewer_substeps_text(const struct step *step, int target, doub
 	struct model model = *step->model;
 	struct step fewer = *step;
 	fewer.model = &model;
-	const bool adaptive = step->taylor.expansion && model.truncation.adaptive;
+	const bool adaptive = step->collocation || (step->taylor.expansion && model.truncation.adaptive);
 	for (int n = model.truncation.substeps / 2; n > 0 && adaptive; n /= 2) {
 		model.truncation.substeps = n;
 		const double worst = worst_of_step(&fewer, target, model.request.single);

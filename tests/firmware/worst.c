@@ -31,6 +31,23 @@ static real any_size(int range)
 	return draw() & 1 ? size : -size;
 }
 
+#ifdef TIMES /* when loads change their formula */
+static const real times[] = { TIMES };
+#endif
+
+/* Where there are such times, mostly up to two steps before one of them */
+static real any_time(real most)
+{
+#ifdef TIMES
+	if (draw() % 4) {
+		const real time = times[draw() % (sizeof times / sizeof *times)];
+		const real before = MODEL.h * (real)(draw() % 2048) / 1024;
+		return time > before ? time - before : 0;
+	}
+#endif
+	return most * (real)(draw() % 100000) / 100000;
+}
+
 static void nothing(void *s, const real *u)
 {
 	(void)s, (void)u;
@@ -96,7 +113,7 @@ static uint32_t climbed(void)
 		for (i = 0; i < MODEL.states; i++)
 			y[i] = kept[i] = any_size(0);
 		for (j = 0; j < TRIES; j++) {
-			const real then = draw() % 8 ? t : (real)(draw() % 100000) / 7000;
+			const real then = draw() % 8 ? t : any_time(14);
 			uint32_t spent;
 			for (i = (int)(draw() % 3); i >= 0; i--)
 				change(&y[draw() % (uint32_t)MODEL.states]);
@@ -133,7 +150,7 @@ int main(void)
 		MODEL.init(state);
 		for (i = 0; i < MODEL.states; i++)
 			y[i] = any_size(j % 4 ? 12 * (j % 4) : 0);
-		MODEL.set(state, (real)(draw() % 100000) / 7, y);
+		MODEL.set(state, any_time(14000), y);
 		for (k = 0; k < STEPS; k++) {
 			const uint32_t spent = next_step();
 			most = spent > most ? spent : most;

@@ -3,7 +3,8 @@
 # worst.sh PLGEN SOURCE_ROOT: the longest step that a search finds on emulated boards (worst.c), against the bound that
 # --explain=json and NAME_STEP_MAX have: never above it, and above 0.7 of it; of steps with events above 0.3, since not
 # every model has as many as it may, or roots that take all looks, of series with events above 0.5, by tolerance 0.4,
-# beside quotients 0.2. The bound was not fitted to these models, but for the long chain. With --table: the table of
+# beside quotients 0.2; of peaks and contacts that act on each other 0.1, for few use all looks, or all sweeps each
+# time. The bound was not fitted to these models, but for the long chain. With --table: the table of
 # doc/firmware.md instead.
 set -u
 table=
@@ -22,8 +23,8 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 cd "$work" || exit 99
 
-# What the boards share, once for each; of the runtime what linear steps, those of regions and retunes call
-calls=$(ls "$root"/runtime/*.c | grep -Ev '_compensated|_d[.]|_df[.]|/(event|region|peak)')
+# What the boards share, once for each; of the runtime what linear steps, peaks, steps of regions and retunes call
+calls=$(ls "$root"/runtime/*.c | grep -Ev '_compensated|_d[.]|_df[.]|/(event|region)')
 prepare() {
 	for b; do
 		board "$b"
@@ -59,13 +60,14 @@ search() {
 	[ "$real" = double ] || option=-DREAL_FLOAT
 	special=$("$plgen" --explain "$@" "$spec" 2>/dev/null |
 		awk '/breakpoints/ { sub(/.*breakpoints /, ""); gsub(/[^-0-9.e,]/, ""); printf "%s,", $0 }')
-	# what serves as long as a tolerance lets it be is slow from states that are found by steps, too
-	[ -n "$special" ] || ! grep -q tolerance "$spec" || special=0,
+	# what serves as long as a tolerance lets it be, and peaks, are slow from states that are found by steps, too
+	[ -n "$special" ] || ! grep -q 'tolerance\|peak(' "$spec" || special=0,
 	# shellcheck disable=SC2086
 	"$plgen" --real "$real" --prefix counted "$@" -o model.c "$spec" 2>log &&
+		times=$(awk '/_change\[.* = \{/, /^}/ { if (sub(/^ *\{/, "")) printf "%s", $1 }' model.c) &&
 		"$plgen" --real "$real" --prefix counted "$@" --explain=json "$spec" >told 2>>log &&
 		$arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -include model.h \
-			${special:+-DSPECIAL=$special-1} \
+			${special:+-DSPECIAL=$special-1} ${times:+-DTIMES=${times%,}} \
 			-fcallgraph-info=su -c "$firmware/worst.c" model.c >>log 2>&1 &&
 		link image.elf model.o worst.o "$b/runtime.a" -lm >>log 2>&1 &&
 		emulate 300 image.elf -icount shift=6,align=off,sleep=off >out 2>>log
@@ -93,8 +95,8 @@ if [ -n "$table" ]; then
 	echo '|model|type|M0: usual|largest|bound|stack|M4F: usual|largest|bound|stack|M7: usual|largest|bound|stack|'
 	echo '|---|---|---|---|---|---|---|---|---|---|---|---|---|---|'
 	events="bouncing_ball brake gear1 gear2 impact_oscillator stick_slip stop"
-	for model in axle building drivetrain frame linear2dof quarter_car rotor scs sdcs sdcsf street tuned_floor \
-		$events; do
+	for model in axle building drivetrain frame half_car linear2dof quarter_car rotor scs sdcs sdcsf street \
+		tuned_floor $events; do
 		cp "$root/models/$model.spec" table.spec
 		case " $events " in *" $model "*) echo 'events at most 2 a step' >>table.spec; model=$model:2 ;; esac
 		for real in double float; do
@@ -139,6 +141,15 @@ sed "s/x^2.z'/z'/; s/0.4.(x - z)^3/0.4*sin(x - z)/" cubic.spec >swing.spec
 sed 's/q\[1\] = 1$/&\nrange q[1] in [-1, 1], q[2]\x27 in [-2, 3]/' six.spec >ranged.spec
 sed -e 's/^coord/param k = 40, c = 0.3\ntunable k, c\n&/; s/ 40\*/ k*/; s/0\.3\*z/c*z/' loads.spec >tuned.spec
 sed 's/^coord/param k = 2\ntunable k\n&/; s/ 2\*q/ k*q/' fourteen.spec >tuned_chain.spec
+cat >pulse.spec <<'END'
+model pulse
+coord x, z
+init x = 1
+let p = t < 0.7 ? 3*t : t < 0.704 ? 2 : t < 0.9 ? cos(4*t) : 0
+x'' + 0.3*x' + 50*x - 2*z = p
+z'' + 0.4*z' + 90*z - 2*x = 0
+step 0.01
+END
 while read -r b real spec options; do
 	# shellcheck disable=SC2086
 	found "$spec $options" "$b" "$real" "$spec.spec" $options
@@ -166,8 +177,15 @@ m0 double tuned
 m4f double tuned
 m7 float tuned
 m4f float tuned_chain
+m4f float eight --form modal
+m7 double loads --form modal
+m4f float pulse
+m7 double pulse
+m0 float pulse
 END
 least=6
+sed 's/taylor 9/radau/; s/x^2/z^2/; $a tolerance 1e-6\nsubsteps 3' cubic.spec >radau.spec
+found radau m4f float radau.spec
 sed 's/taylor 9/taylor/; $a tolerance 1e-6\nsubsteps 5' cubic.spec >within.spec
 found within m4f float within.spec
 found within m7 double within.spec
@@ -175,6 +193,7 @@ least=2
 sed 's/x + 0.4.(x - z)^3/x + x\/(4 + x^2)/' within.spec >quotient.spec
 found 'within, a quotient' m4f float quotient.spec
 least=4
+found radau m7 double radau.spec
 sed "s/0.2.x'/0.2*x'*abs(x')/; \$a events at most 2 a step" within.spec >within_events.spec
 found 'within, events' m4f float within_events.spec
 least=5
@@ -188,6 +207,8 @@ m4f float touch
 m7 double touch
 END
 least=3
+sed 's/radau/auto/' radau.spec >auto.spec
+found auto m4f float auto.spec
 cat >gap.spec <<'END'
 model gap
 coord x, z
@@ -234,4 +255,9 @@ m4f float rub
 m0 float bounce
 m7 double bounce
 END
+least=1
+sed 's/2\*u/0/; s/^input.*//; $a output p = peak(x), v = peak(z\x27)' loads.spec >peaks.spec
+found peaks m4f float peaks.spec
+sed '$a stop between z, x at 0.2 restitution 0.4' bounce.spec >stack.spec
+found stack m4f float stack.spec
 tap_end
