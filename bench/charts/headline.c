@@ -91,7 +91,7 @@ struct found { double setting, error; bool reached; double estimate; };
 /* Tolerances, ten to the decade: bisection between one that does not reach it and one that does. Near the end of
  * double precision errors are not monotonic, so that first every decade is asked. */
 static struct found find_tolerance(const struct method *method, const struct problem *p, const struct truth *t,
-                                   double target)
+								   double target)
 {
 	enum { COARSEST = 40, FINEST = 150, DECADE = 10 };
 	struct found best = { 0, INFINITY, false, 0 };
@@ -115,7 +115,7 @@ static struct found find_tolerance(const struct method *method, const struct pro
 /* Parts of a unit: from the error with some and the order follows how many it takes; from there one down as long as
  * that does, or up. */
 static struct found find_step(const struct method *method, const struct problem *p, const struct truth *t,
-                              double target, int most)
+							  double target, int most)
 {
 	struct found best = { 0, INFINITY, false, 0 };
 	int low = 0, high = 0, parts = 1;
@@ -233,7 +233,7 @@ static const struct found *found_before(const struct rows *rows, const struct me
 }
 
 static void look_for(struct rows *rows, const struct method *const *methods, const struct problem *p,
-                     const struct truth *t, double target, int most)
+					 const struct truth *t, double target, int most)
 {
 	for (; *methods; methods++) {
 		struct row *row = add_row(rows, *methods, NULL);
@@ -313,7 +313,7 @@ static void add_targets(struct rows *rows, struct rows *exact, const struct trut
 }
 
 static void integrators(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
-                        bool quick)
+						bool quick)
 {
 	static struct rows rows, exact;
 	double of_exact = NAN;
@@ -363,7 +363,7 @@ static void put_found(FILE *out, const struct row *row, double value)
 }
 
 static void equal_step(const struct problem *p, const struct truth *t, const char *variants, const char *folder,
-                       bool quick)
+					   bool quick)
 {
 	static struct rows rows;
 	const int long_steps = quick ? 1000000 : 10000000;

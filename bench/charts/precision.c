@@ -68,7 +68,7 @@ enum { MODELS = sizeof models / sizeof *models };
 /* Steps, as the unit over these, by kind. A step of the beams must be below 2.7e-4 s for RK4; their implicit methods,
  * which solve for 30 unknowns, and their schemes stay at the first. */
 static const char *const steps_fixed[] = { "1 2 4 8 16 32 64", "4 16 64 256 1024", "1 4 16 40 80",
-                                            "16 64 256 1024 4096" };
+											"16 64 256 1024 4096" };
 static const char *const steps_fixed_quick[] = { "1 8 64", "16 256", "1 16 40", "16 4096" };
 static const char *const steps_scheme[] = { "1 2 4 8 16 32", "1 4 16 64 256 1024", "1 4 16", "1 4 16 64 256 1024" };
 static const char *const steps_scheme_quick[] = { "1 8", "4 64", "1 8", "4 64" };
@@ -269,7 +269,7 @@ static struct line *add_line(struct lines *lines)
 
 /* everywhere: else what cannot on this model is left out */
 static void add_peer(struct lines *lines, const struct problem *p, const struct method *method, double setting,
-                     bool everywhere)
+					 bool everywhere)
 {
 	struct run *run = method->open(method, p, setting);
 	if (!run && !everywhere)
@@ -280,7 +280,7 @@ static void add_peer(struct lines *lines, const struct problem *p, const struct 
 }
 
 static void add_peers(struct lines *lines, const struct charted *m, const struct problem *p,
-                      const struct method *const *methods, bool quick, bool everywhere)
+					  const struct method *const *methods, bool quick, bool everywhere)
 {
 	char word[16];
 	for (; *methods; methods++)
@@ -298,7 +298,7 @@ static void add_spans(struct lines *lines, const struct charted *m, const struct
 }
 
 static void add_ours(struct lines *lines, const struct charted *m, const struct problem *p, bool quick,
-                     const char *folder)
+					 const char *folder)
 {
 	char word[16];
 	for (const struct ours *o = ours; o < ours + OURS_COUNT; o++)
@@ -315,7 +315,7 @@ static void add_ours(struct lines *lines, const struct charted *m, const struct 
 }
 
 static void add_all(struct lines *lines, const struct charted *m, const struct problem *p, bool quick,
-                    const char *folder)
+					const char *folder)
 {
 	/* A peer is added to one of these lists */
 	add_peers(lines, m, p, fixed_methods, quick, true);

@@ -49,10 +49,10 @@ static void sizes(const struct beam *b)
 	bool good = true;
 	for (int which = 0; which < ALL; which++) {
 		good = close_to((double)b->of[which]->size1, n, 0, "rows of %s", names[which]) && good;
-                good =
+				good =
                     close_to((double)b->of[which]->size2, which < MATRICES ? n : 1, 0, "columns of %s", names[which]) &&
-                    good;
-        }
+					good;
+		}
 	ok(good, "%s: sizes", b->name);
 }
 
@@ -76,9 +76,9 @@ static void same_files(const char *prefix)
 			for (size_t j = 0; j < then->size2; j++) {
 				const double expected = gsl_matrix_get(now, i, j), found = gsl_matrix_get(then, i, j);
                                 good = close_to(found, expected, 1e-13 * fabs(expected), "%s[%zu][%zu]", names[which],
-                                                i + 1, j + 1) &&
-                                       good;
-                        }
+												i + 1, j + 1) &&
+									   good;
+						}
 		ok(good, "models/beam/%s.mtx is what beam_matrices writes", names[which]);
 		gsl_matrix_free(now);
 	}
@@ -93,13 +93,13 @@ struct shapes {
 
 static struct shapes shapes(double l, double z)
 {
-    return (struct shapes){
-        { 1 - z, 0, 0, z, 0, 0 },
-        { -1 / l, 0, 0, 1 / l, 0, 0 },
+	return (struct shapes){
+		{ 1 - z, 0, 0, z, 0, 0 },
+		{ -1 / l, 0, 0, 1 / l, 0, 0 },
         { 0, 1 - 3 * z * z + 2 * z * z * z, l * z * (1 - z) * (1 - z), 0, z * z * (3 - 2 * z), l * z * z * (z - 1) },
-        { 0, 6 * z * (z - 1) / l, (1 - z) * (1 - 3 * z), 0, 6 * z * (1 - z) / l, z * (3 * z - 2) },
-        { 0, (12 * z - 6) / (l * l), (6 * z - 4) / l, 0, (6 - 12 * z) / (l * l), (6 * z - 2) / l }
-    };
+		{ 0, 6 * z * (z - 1) / l, (1 - z) * (1 - 3 * z), 0, 6 * z * (1 - z) / l, z * (3 * z - 2) },
+		{ 0, (12 * z - 6) / (l * l), (6 * z - 4) / l, 0, (6 - 12 * z) / (l * l), (6 * z - 2) / l }
+	};
 }
 
 /* The integrands of the energies, by pairs of coordinates; of the loads in the first column. */
@@ -129,10 +129,10 @@ static void add_point(const struct beam *b, int which, gsl_matrix *sum, size_t e
 	for (int i = 0; i < 6; i++)
 		for (int j = 0; j < (which < MATRICES ? 6 : 1); j++) {
                     const int row = 3 * (int)element - 3 + i, column = which < MATRICES ? 3 * (int)element - 3 + j : 0;
-                    if (row >= 0 && column >= 0)
-                        *gsl_matrix_ptr(sum, (size_t)row, (size_t)column) += weight * l *
+					if (row >= 0 && column >= 0)
+						*gsl_matrix_ptr(sum, (size_t)row, (size_t)column) += weight * l *
                                                                              integrand(b, which, &s, x, i, j);
-                }
+				}
 }
 
 static void quadrature(const struct beam *b)
@@ -151,14 +151,14 @@ static void quadrature(const struct beam *b)
 		for (size_t i = 0; i < sum->size1; i++)
 			for (size_t j = 0; j < sum->size2; j++) {
 				/* Entries of unlike units: compare over the diagonal, or over the vector's largest. */
-                                const double expected = gsl_matrix_get(sum, i, j),
+								const double expected = gsl_matrix_get(sum, i, j),
                                              scale = which == K || which == M
                                                          ? sqrt(gsl_matrix_get(sum, i, i) * gsl_matrix_get(sum, j, j))
                                                          : gsl_matrix_max(sum);
                                 good = close_to(get(b, which, i, j), expected, 1e-14 * scale, "%s[%zu][%zu]",
                                                 names[which], i + 1, j + 1) &&
-                                       good;
-                        }
+									   good;
+						}
 		ok(good, "%s: %s by Gauss quadrature", b->name, names[which]);
 		gsl_matrix_free(sum);
 	}
@@ -201,9 +201,9 @@ static void stretch(const struct beam *b, double w)
 	const double found = static_stretch(b, effective_stiffness(b, 0), w);
 	const double with_field = static_stretch(b, effective_stiffness(b, w), w);
         ok(close_to(found, simple, 1e-12 * simple, "stretch"), "%s, w = %g: stretch rho w^2 L^3/(3E) = %.9g m", b->name,
-           w, simple);
+		   w, simple);
         ok(close_to(with_field, full, 2e-6 * full, "stretch"), "%s, w = %g: with its own field, %.9g m", b->name, w,
-           full);
+		   full);
 }
 
 /* ---- frequencies ---- */
@@ -245,7 +245,7 @@ static void bending(const struct beam *b, const gsl_vector *w)
 		const double error = pow(root[k] / (double)b->elements, 4) / 720, found = gsl_vector_get(w, k);
                 ok(close_to(found, expected * (1 + error / 2), expected * (error / 2 + 1e-8), "frequency"),
                    "%s: bending frequency %zu, %.6g rad/s, at most %.1g too high", b->name, k + 1, expected, error);
-        }
+		}
 }
 
 /* Of a bar of linear elements: w^2 = 6 E/(rho l^2) (1 - cos a)/(2 + cos a), a = (2k - 1) pi/(2n). */
@@ -274,9 +274,9 @@ static void largest(const gsl_vector *w)
 static double rotating_frequency(const struct beam *b, double w)
 {
 	const size_t n = 3 * b->elements;
-        gsl_matrix *k = effective_stiffness(b, w), *a = gsl_matrix_calloc(2 * n, 2 * n),
-                   *c = gsl_matrix_calloc(2 * n, 2 * n);
-        for (size_t i = 0; i < n; i++) {
+		gsl_matrix *k = effective_stiffness(b, w), *a = gsl_matrix_calloc(2 * n, 2 * n),
+				   *c = gsl_matrix_calloc(2 * n, 2 * n);
+		for (size_t i = 0; i < n; i++) {
 		gsl_matrix_set(a, i, n + i, 1);
 		gsl_matrix_set(c, i, i, 1);
 		for (size_t j = 0; j < n; j++) {
@@ -313,8 +313,8 @@ static void chordwise(const struct beam *b)
 		const double found = rotating_frequency(b, published[i].speed);
                 ok(close_to(found, published[i].frequency, 1e-3 * published[i].frequency, "frequency"),
                    "%s at speed %g: first chordwise frequency %.5f, published %.4f", b->name, published[i].speed, found,
-                   published[i].frequency);
-        }
+				   published[i].frequency);
+		}
 }
 
 static void judge(const struct beam *b)

@@ -62,22 +62,22 @@ EOF
 
 # looks NAME STATE LOW HIGH [OPTIONS]: of one.spec; its state of this number is to leave LOW .. HIGH
 looks() {
-    name=$1
-    flags="-DSTATE=$2 -DLOW=$3 -DHIGH=$4"
-    shift 4
-    case "$*" in *float*) flags="$flags -DFLOAT" ;; esac
-    # shellcheck disable=SC2086
-    "$plgen" --prefix the "$@" one.spec >one.c 2>log &&
-        $run_cc $flags -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log && timeout 60 ./look >>log
-    result $? "$name: the step that leaves the range"
+	name=$1
+	flags="-DSTATE=$2 -DLOW=$3 -DHIGH=$4"
+	shift 4
+	case "$*" in *float*) flags="$flags -DFLOAT" ;; esac
+	# shellcheck disable=SC2086
+	"$plgen" --prefix the "$@" one.spec >one.c 2>log &&
+		$run_cc $flags -I"$root/runtime" look.c one.c "$archive" -lm -o look 2>>log && timeout 60 ./look >>log
+	result $? "$name: the step that leaves the range"
 }
 
 spec() {
-    { echo 'model m'; cat; } >one.spec
+	{ echo 'model m'; cat; } >one.spec
 }
 
 linear() {
-    spec <<EOF
+	spec <<EOF
 param most = 0.4
 coord x, y
 init x = 1, y' = 0.3
@@ -89,15 +89,15 @@ $1
 EOF
 }
 for form in auto direct delta modal; do
-    linear ''
-    looks "linear, $form" 2 -2 1.2 --form $form
+	linear ''
+	looks "linear, $form" 2 -2 1.2 --form $form
 done
 looks 'linear, compensated' 2 -2 1.2 --accuracy compensated
 looks 'linear, in float' 2 -2 1.2 --real float
 looks 'linear, another param' 2 -2 0.9 -D most=0.3
 for scheme in pl etdrk4 nc3 bm3 taylor 'taylor 8' radau etdam4; do
-    linear ''
-    looks "linear, $scheme" 2 -2 1.2 --scheme "$scheme"
+	linear ''
+	looks "linear, $scheme" 2 -2 1.2 --scheme "$scheme"
 done
 spec <<'EOF'
 param k = 4
@@ -128,14 +128,14 @@ step 0.05
 range q[3] in [-0.1, 0.2], q' in [-5, 5]
 EOF
 {
-    echo '%%MatrixMarket matrix coordinate real symmetric'
-    echo '20 20 39'
-    i=1
-    while [ $i -le 20 ]; do
-        echo "$i $i 2"
-        [ $i = 1 ] || echo "$i $((i - 1)) -1"
-        i=$((i + 1))
-    done
+	echo '%%MatrixMarket matrix coordinate real symmetric'
+	echo '20 20 39'
+	i=1
+	while [ $i -le 20 ]; do
+		echo "$i $i 2"
+		[ $i = 1 ] || echo "$i $((i - 1)) -1"
+		i=$((i + 1))
+	done
 } >K.mtx
 looks 'many states' 2 -0.1 0.2
 
@@ -157,7 +157,7 @@ range x' in [-1, 0.9]
 EOF
 looks 'regions' 1 -1 0.9
 curved() {
-    spec <<EOF
+	spec <<EOF
 coord x
 init x = 1
 x'' + 0.1*x' + x^3 + 10*max(x - 0.5, 0) = cos(t)
@@ -167,8 +167,8 @@ scheme $1
 EOF
 }
 for scheme in taylor 'taylor 8' radau auto etdrk2; do
-    curved "$scheme"
-    looks "from crossing to crossing, $scheme" 1 -1 0.9
+	curved "$scheme"
+	looks "from crossing to crossing, $scheme" 1 -1 0.9
 done
 spec <<'EOF'
 coord x

@@ -16,8 +16,8 @@ root=$6
 firmware=$root/tests/firmware
 . "$firmware/boards.sh"
 if ! boards_installed; then
-    echo "1..0 # SKIP no $arm-gcc or no qemu-system-arm"
-    exit 0
+	echo "1..0 # SKIP no $arm-gcc or no qemu-system-arm"
+	exit 0
 fi
 board "$name"
 optimize_less "$name"
@@ -28,11 +28,11 @@ trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
 
 compile() {         # compile SOURCE OBJECT [OPTION ...]
-    source=$1
-    object=$work/$2.o
-    shift 2
-    # shellcheck disable=SC2086
-    $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" "$@" -c "$source" -o "$object" || exit 99
+	source=$1
+	object=$work/$2.o
+	shift 2
+	# shellcheck disable=SC2086
+	$arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" "$@" -c "$source" -o "$object" || exit 99
 }
 compile "$double" double
 compile "$float" float -DREAL_FLOAT
@@ -50,29 +50,29 @@ status=$?
 # A result for each variant, one for the stack, which on a small board must not reach the variables, and one for the
 # end.
 awk -v board="$name" -v steps="$7" -v status=$status '
-    FNR == NR { if (!($1 in lines)) order[++n] = $1
-                expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
-    { found[$1 " " $2] = $0; last = $0 }
-    $1 == "stack" { used = $2; room = $4 }
-    END {
-        for (i = 1; i <= n; i++) {
-            m = split(lines[order[i]], key, "|")
-            bad = 0
-            for (j = 2; j <= m; j++)
+	FNR == NR { if (!($1 in lines)) order[++n] = $1
+				expected[$1 " " $2] = $0; lines[$1] = lines[$1] "|" $1 " " $2; next }
+	{ found[$1 " " $2] = $0; last = $0 }
+	$1 == "stack" { used = $2; room = $4 }
+	END {
+		for (i = 1; i <= n; i++) {
+			m = split(lines[order[i]], key, "|")
+			bad = 0
+			for (j = 2; j <= m; j++)
                 # status 1 or 4: a run that has left the finite numbers, or that gives up each step, says nothing
                 if ((found[key[j]] != expected[key[j]] || expected[key[j]] ~ / status [145]$/) && bad++ == 0)
-                    said = "# found    " found[key[j]] "\n# expected " expected[key[j]]
-            print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " \
-                m - 1 " lines, up to " steps " steps"
-            if (bad) print said "\n# " bad " of " m - 1 " lines differ"
-            failed += bad != 0
-        }
-        good = used > 0 && used < room
-        print (good ? "ok " : "not ok ") n + 1 " - " board ": stack " used + 0 " bytes, of at least " \
-            room + 0 " that are there"
-        failed += !good
-        good = status == 0 && last == "end"
-        print (good ? "ok " : "not ok ") n + 2 " - " board ": the image runs to its end"
-        if (!good) { print "# status " status " (124: timeout), last line " last; failed++ }
-        print "1.." n + 2
-        exit failed != 0 }' "$work/expected" "$work/found"
+					said = "# found    " found[key[j]] "\n# expected " expected[key[j]]
+			print (bad ? "not ok " : "ok ") i " - " board ", " order[i] ": the bits of this host, " \
+				m - 1 " lines, up to " steps " steps"
+			if (bad) print said "\n# " bad " of " m - 1 " lines differ"
+			failed += bad != 0
+		}
+		good = used > 0 && used < room
+		print (good ? "ok " : "not ok ") n + 1 " - " board ": stack " used + 0 " bytes, of at least " \
+			room + 0 " that are there"
+		failed += !good
+		good = status == 0 && last == "end"
+		print (good ? "ok " : "not ok ") n + 2 " - " board ": the image runs to its end"
+		if (!good) { print "# status " status " (124: timeout), last line " last; failed++ }
+		print "1.." n + 2
+		exit failed != 0 }' "$work/expected" "$work/found"

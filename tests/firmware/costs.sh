@@ -12,39 +12,39 @@ firmware=$root/tests/firmware
 . "$firmware/boards.sh"
 board m4f
 if ! boards_installed; then
-    echo '1..0 # SKIP no arm-none-eabi-gcc, or no qemu-system-arm'
-    exit 0
+	echo '1..0 # SKIP no arm-none-eabi-gcc, or no qemu-system-arm'
+	exit 0
 fi
 for f in start semihosting digits; do
-    # shellcheck disable=SC2086
-    $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -c "$firmware/$f.c" -o "$f.o"
+	# shellcheck disable=SC2086
+	$arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -c "$firmware/$f.c" -o "$f.o"
 done
 mkdir runtime
 # shellcheck disable=SC2086
 (cd runtime && $arm-gcc $optimize $cpu -I"$root/runtime" -c "$root"/runtime/*.c && $arm-ar rcD ../runtime.a ./*.o)
 # The clock of -icount shift=10 has 1024 ns an instruction, that of SysTick 40 ns a tick
 while read -r name real factor banner options; do
-    option=-DREAL_DOUBLE
-    [ "$real" = double ] || option=-DREAL_FLOAT
-    # shellcheck disable=SC2086
-    "$plgen" --real "$real" --prefix counted $options "$root/models/$name.spec" >model.c 2>log &&
-        "$plgen" --real "$real" --explain=json $options "$root/models/$name.spec" >told 2>log &&
-        $arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -c model.c \
-            "$firmware/costs.c" >>log 2>&1 &&
-        link image.elf model.o costs.o start.o semihosting.o digits.o runtime.a -lm >>log 2>&1 &&
-        emulate 60 image.elf -icount shift=10,align=off,sleep=off >out
-    tail -n 1 out 2>/dev/null | cat - told model.c | awk -v factor="$factor" -v like="$banner" '
-        NR == 1 { bytes = $1; counted = $2 / 200 / 25.6 }
-        /"board"/ { gsub(/[",{}]/, " "); for (i = 1; i < NF; i++) { if ($i == "instructions") about = $(i + 2)
-            if ($i == "bytes") own = $(i + 2) } }
-        /On a Cortex-M4/ { for (i = 1; i < NF; i++) if ($i == "about") banner = $(i + 1) }
-        END { print "instructions:", about, "told,", counted, "counted; bytes:", own, "told,", bytes
-            off = like == "=" ? 1.06 : like == "~" ? 1.7 : 0
+	option=-DREAL_DOUBLE
+	[ "$real" = double ] || option=-DREAL_FLOAT
+	# shellcheck disable=SC2086
+	"$plgen" --real "$real" --prefix counted $options "$root/models/$name.spec" >model.c 2>log &&
+		"$plgen" --real "$real" --explain=json $options "$root/models/$name.spec" >told 2>log &&
+		$arm-gcc $optimize $cpu -I"$root/runtime" -I"$firmware" -DMODEL=counted_model $option -c model.c \
+			"$firmware/costs.c" >>log 2>&1 &&
+		link image.elf model.o costs.o start.o semihosting.o digits.o runtime.a -lm >>log 2>&1 &&
+		emulate 60 image.elf -icount shift=10,align=off,sleep=off >out
+	tail -n 1 out 2>/dev/null | cat - told model.c | awk -v factor="$factor" -v like="$banner" '
+		NR == 1 { bytes = $1; counted = $2 / 200 / 25.6 }
+		/"board"/ { gsub(/[",{}]/, " "); for (i = 1; i < NF; i++) { if ($i == "instructions") about = $(i + 2)
+			if ($i == "bytes") own = $(i + 2) } }
+		/On a Cortex-M4/ { for (i = 1; i < NF; i++) if ($i == "about") banner = $(i + 1) }
+		END { print "instructions:", about, "told,", counted, "counted; bytes:", own, "told,", bytes
+			off = like == "=" ? 1.06 : like == "~" ? 1.7 : 0
             if (off && !(banner < off * about && about < off * banner)) { print "banner:", banner; exit 1 }
             exit !(about > 0 && about < factor * counted && counted < factor * about && own == bytes) }' >log
-    good=$?
-    result $good "$name, $real: $(cat log)"
-    rm -f out
+	good=$?
+	result $good "$name, $real: $(cat log)"
+	rm -f out
 done <<END
 scs double 1.34 =
 scs float 1.34 =

@@ -34,9 +34,9 @@ static void output(const char *spec, const char *c)
 static void any_output(int n)
 {
 	const int i = below(coords), component = any_component(i);
-        const struct both x = derivative(i, component, 0), a = derivative(i, component, coord[i].order),
-                          w = any_state();
-        struct both e;
+		const struct both x = derivative(i, component, 0), a = derivative(i, component, coord[i].order),
+						  w = any_state();
+		struct both e;
 	switch (below(9)) {
 	case 0: case 1: e = JOIN("@ + @*@", x, fixed(0.5, 2), w); break;
 	case 2: e = a; break;
@@ -69,8 +69,8 @@ static void write_outputs(void)
 		for (int i = 0; i < coords; i++) {
 			if (!coord[i].size || !chance(50)) {
                             const struct both x = derivative(i, any_component(i), coord[i].order == 2 ? below(2) : 0);
-                            output(x.spec, x.c);
-                            continue;
+							output(x.spec, x.c);
+							continue;
 			}
 			for (int r = 0; r < coord[i].size; r++)
 				add(&c_outputs, text("\tout[%d] = %s;\n", outputs++, derivative(i, r, 0).c));
@@ -105,12 +105,12 @@ static char *operator_statement(void)
 	if (class < SMOOTH || !chance(30))
 		return "";
 	const struct both x = any_state();
-        switch (drive == TURNS_FAR ? 1
+		switch (drive == TURNS_FAR ? 1
                                    : below(3)) { /* where one of a drive's states is fixed, all are kept as written */
-        case 0: return text("operator at %s = %s\n", x.spec, chance(50) ? "0" : "0.2");
+		case 0: return text("operator at %s = %s\n", x.spec, chance(50) ? "0" : "0.2");
 	case 1: return text("operator at t = 0.1\n");
 	default: return text("operator at %s = -0.3, 0, 0.3, 0.6\n", x.spec);
-        }
+		}
 }
 
 static char *options(const char *stated)
@@ -125,9 +125,9 @@ static char *options(const char *stated)
 	else if (!drive && chance(8))
 		add(&all, chance(70) ? " --scheme exact" : " --scheme pl");
 	if (class == LINEAR ? chance(30) : chance(2))
-            add(&all,
+			add(&all,
                 text(" --form %s", (const char *const[]){ "direct", "delta", "kick-drift-kick", "auto" }[below(4)]));
-        if (class == LINEAR && states <= 16 && !tunable ? chance(18) : chance(1))
+		if (class == LINEAR && states <= 16 && !tunable ? chance(18) : chance(1))
 		add(&all, " --accuracy compensated");
 	if (class == LINEAR && !tunable ? chance(20) : chance(2))
 		add(&all, " --reduce");
@@ -144,12 +144,12 @@ static char *options(const char *stated)
 
 /* Names that other libraries have taken too. */
 static const char *const odd[] = { "I",        "complex",  "NULL",  "errno", "math_errhandling",
-                                   "HUGE_VAL", "uint64_t", "x0",    "E",     "e1",
-                                   "lo",       "work",     "s",     "y",     "u",
-                                   "h",        "k",        "left",  "part1", "size",
-                                   "fabs",     "M_PI",     "i",     "q1",    "load1",
-                                   "phase",    "stdin",    "isnan", "NAN",   "signal",
-                                   "double_t", "a_dot" };
+								   "HUGE_VAL", "uint64_t", "x0",    "E",     "e1",
+								   "lo",       "work",     "s",     "y",     "u",
+								   "h",        "k",        "left",  "part1", "size",
+								   "fabs",     "M_PI",     "i",     "q1",    "load1",
+								   "phase",    "stdin",    "isnan", "NAN",   "signal",
+								   "double_t", "a_dot" };
 
 static void declare(void)
 {
@@ -205,7 +205,7 @@ static char *initial(void)
                                                                           : drive && class != LINEAR ? 0.0003
                                                                                                      : 0.001) +
                                                        (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
-        return *all ? text("%s\n", all) : all;
+		return *all ? text("%s\n", all) : all;
 }
 
 /* What no expression reads */
@@ -248,7 +248,7 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 	fprintf(file, "%s%s%s%s%s%s", initial(), spec_lets, operator, spec_equations, spec_outputs, stated);
 	if (chance(6))
 		fprintf(file, "let unread = %s + t\n", coord[0].size ? "2" : coord[0].name);
-        fprintf(file, "step %s\n",
+		fprintf(file, "step %s\n",
                 (const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
 }
 
@@ -268,11 +268,11 @@ static void write_c(FILE *file, const char *given)
 	fprintf(file, "};\n\nvoid NAME(residual)(double t, const double *y, const double *u, const double *top, double "
 	    "*r)\n{\n%s%s", names, c_lets);
 	fprintf(file, "\t(void)t, (void)y, (void)u;\n%s}\n\n", c_rows);
-        fprintf(file,
+		fprintf(file,
                 "void NAME(wanted)(double t, const double *y, const double *u, const double *top, double *out)\n{\n"
-                "%s%s",
-                names, c_lets);
-        fprintf(file, "\t(void)t, (void)y, (void)u, (void)top;\n");
+				"%s%s",
+				names, c_lets);
+		fprintf(file, "\t(void)t, (void)y, (void)u, (void)top;\n");
 	if (outputs)
 		fprintf(file, "%s}\n", c_outputs);
 	else

@@ -48,9 +48,9 @@ static void scalar_equation(int i)
 		const int j = below(i), component = any_component(j);
 		sum = JOIN("@ + @*(@ - @)", sum, factor(0.5, 9), derivative(i, -1, 0), derivative(j, component, 0));
 		if (x->order == 2 && coord[j].order == 2 && chance(30))
-                    sum =
+					sum =
                         JOIN("@ - @*(@ - @)", sum, fixed(0.01, 0.2), derivative(j, component, 1), derivative(i, -1, 1));
-        }
+		}
 	if (i + 1 < coords && chance(40))
 		sum = JOIN("@ - @*@", sum, factor(0.2, 4), derivative(i + 1, any_component(i + 1), 0));
 	equation(sum, chance(75) ? force() : same("0"));
@@ -73,21 +73,21 @@ static struct both shaft(int i, int p, bool second)
 	struct both force = JOIN("@*@", k, d);
 	const int kind = below(10);
 	if (class == PIECEWISE && kind < 6)
-            force = kind < 2   ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3))
-                    : kind < 3 ? JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, d, a)
-                    : kind < 4
+			force = kind < 2   ? JOIN("@*deadzone(@, -@, @)", k, d, a, fixed(0.05, 0.3))
+					: kind < 3 ? JOIN2("@*max(@ - @, 0)", "@*fmax(@ - @, 0)", k, d, a)
+					: kind < 4
                         ? JOIN2("table(@; -1, -@; -0.1, 0; 0.2, @)", "table3(@, -1, -@, -0.1, 0, 0.2, @)", d, k, a)
-                    : kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d)
-                               : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
-        if (class >= SMOOTH && kind < 5)
-            force = kind < 2   ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 5), d)
-                    : kind < 3 ? JOIN("@*sin(@)", k, d)
-                    : kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d)
-                               : JOIN("@*tanh(@)", k, d);
-        if (class == KINKED && kind >= 5 && kind < 8)
-            force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d)
-                             : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
-        if (second && chance(60))
+					: kind < 5 ? JOIN2("@*(@ + abs(@))", "@*(@ + fabs(@))", k, d, d)
+							   : JOIN("@*@ + @*clip(@, -@, @)", k, d, k, d, a, a);
+		if (class >= SMOOTH && kind < 5)
+			force = kind < 2   ? JOIN2("@*@ + @*@^3", "@*@ + @*pow(@, 3)", k, d, fixed(1, 5), d)
+					: kind < 3 ? JOIN("@*sin(@)", k, d)
+					: kind < 4 ? JOIN("(@ + @*cos(@*t))*@", k, a, fixed(1, 6), d)
+							   : JOIN("@*tanh(@)", k, d);
+		if (class == KINKED && kind >= 5 && kind < 8)
+			force = kind < 7 ? JOIN2("@*@*abs(@)", "@*@*fabs(@)", k, d, d)
+							 : JOIN2("@*max(@, 0)^2", "@*pow(fmax(@, 0), 2)", k, d);
+		if (second && chance(60))
 		force = JOIN("@ + @*@", force, factor(0.05, 1), between(i, p, 1));
 	else if (chance(8))             /* an inerter, or what the other's rate drags along */
 		force = JOIN("@ + @*@", force, fixed(0.05, 0.2),
@@ -111,11 +111,11 @@ static void drive_equations(void)
 		sum[i] = JOIN("@*@", coord[i].order == 1 && class != LINEAR ? factor(3, 6) : factor(0.5, 3),
 			derivative(i, -1, coord[i].order));
                 if (coord[i].order == 1 && i > 0 && coord[i - 1].order == 2 && motion(i) == motion(i - 1) &&
-                    chance(25)) {
-                    sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
-                    integrates[i] = true;
-                }
-        }
+					chance(25)) {
+					sum[i] = JOIN("@ - @", derivative(i, -1, 1), derivative(i - 1, -1, 1));
+					integrates[i] = true;
+				}
+		}
 	for (int i = 1; i < coords; i++) {
 		const int p = chance(80) ? i - 1 : below(i);
 		if (chance(6) || integrates[i])
@@ -156,9 +156,9 @@ void declare_drive(void)
 	for (int i = 0; i < coords; i++) {
 		coord[i].name = text("%s%d", (const char *const[]){ "x", "th_", "w" }[below(3)], i);
 		coord[i].order = first || chance(i ? 8 : 20) ? 1 : 2;
-                ratio[i] = copy(gears ? ratios[below(class == LINEAR ? 7 : 3)]
+				ratio[i] = copy(gears ? ratios[below(class == LINEAR ? 7 : 3)]
                                       : "1") /* a gear stiffens by its ratio squared */;
-        }
+		}
 }
 
 static char *matrix_text(int n, double on, double beside)
@@ -166,11 +166,11 @@ static char *matrix_text(int n, double on, double beside)
 	char *all = "[";
 	for (int r = 0; r < n; r++) {
 		for (int c = 0; c < n; c++)
-                    add(&all, text("%s%g", c ? ", " : "",
-                                   c == r                     ? on + r * 0.5
-                                   : c == r + 1 || r == c + 1 ? beside
+					add(&all, text("%s%g", c ? ", " : "",
+								   c == r                     ? on + r * 0.5
+								   : c == r + 1 || r == c + 1 ? beside
                                                               : 0));
-                add(&all, r + 1 < n ? "; " : "]");
+				add(&all, r + 1 < n ? "; " : "]");
 	}
 	return all;
 }
@@ -200,24 +200,24 @@ static void vector_equation(int i)
 	for (int r = 0; r < q->size; r++)
 		add(&shape, text("%s%d", r ? "; " : "", r % 3));
 	add(&spec_lets, text("matrix f%d = %s]\n", i, shape));
-        char *const extra = cubic ? text(" + 0.3*sin(%s)", q->name)
-                            : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", q->name)
-                                  : "";
-        if (q->order == 2)
+		char *const extra = cubic ? text(" + 0.3*sin(%s)", q->name)
+							: gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", q->name)
+								  : "";
+		if (q->order == 2)
             add(&spec_equations, text("%s%s'' + %g*%s' + K%d*%s%s = f%d*(%s)\n", mass ? text("M%d*", i) : "", q->name,
-                                      c, q->name, i, q->name, extra, i, f.spec));
-        else
-            add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name,
-                                      cubic ? text(" - 0.3*sin(%s)", q->name)
+									  c, q->name, i, q->name, extra, i, f.spec));
+		else
+			add(&spec_equations, text("%s' = -K%d*%s%s + f%d*(%s)\n", q->name, i, q->name,
+									  cubic ? text(" - 0.3*sin(%s)", q->name)
                                       : gap ? text(" - 3*deadzone(%s, -0.1, 0.2)", q->name)
-                                            : "",
-                                      i, f.spec));
-        for (int r = 0; r < q->size; r++) {
+											: "",
+									  i, f.spec));
+		for (int r = 0; r < q->size; r++) {
 		const char *const x = derivative(i, r, 0).c;
-                const char *const own = cubic ? text(" + 0.3*sin(%s)", x)
+				const char *const own = cubic ? text(" + 0.3*sin(%s)", x)
                                         : gap ? text(" + 3*deadzone(%s, -0.1, 0.2)", x)
-                                              : "";
-                const char *const head = derivative(i, r, q->order).c;
+											  : "";
+				const char *const head = derivative(i, r, q->order).c;
 		add_row(text("%g*%s + %s + %s%s - %d*(%s)", mass ? 1 + r * 0.5 : 1, head,
 			q->order == 2 ? text("%g*%s", c, derivative(i, r, 1).c) : "0.0",
 			row_times(i, r, 0, k, -1), own, r % 3, f.c));
@@ -230,16 +230,16 @@ static void sketch(int i)
 	const struct both m1 = factor(0.5, 3), m2 = factor(0.5, 3), k1 = factor(1, 40), k2 = factor(1, 10),
 		c = factor(0.05, 1), f = force();
 	const char *const a = coord[i].name, *const b = coord[i + 1].name;
-        add(&spec_equations,
+		add(&spec_equations,
             text("mass %s at %s\nmass %s at %s\nspring %s between %s, ground\n", m1.spec, a, m2.spec, b, k1.spec, a));
         add(&spec_equations, text("spring %s between %s, %s\ndamper %s between %s, %s\nforce %s on %s\n", k2.spec, a, b,
 		c.spec, a, b, f.spec, b));
 	const struct both xa = derivative(i, -1, 0), va = derivative(i, -1, 1), xb = derivative(i + 1, -1, 0),
 		vb = derivative(i + 1, -1, 1);
         add_row(text("%s*%s + %s*%s + %s*(%s - %s) + %s*(%s - %s)", m1.c, derivative(i, -1, 2).c, k1.c, xa.c, k2.c,
-                     xa.c, xb.c, c.c, va.c, vb.c));
+					 xa.c, xb.c, c.c, va.c, vb.c));
         add_row(text("%s*%s + %s*(%s - %s) + %s*(%s - %s) - (%s)", m2.c, derivative(i + 1, -1, 2).c, k2.c, xb.c, xa.c,
-                     c.c, vb.c, va.c, f.c));
+					 c.c, vb.c, va.c, f.c));
 }
 
 void equations(void)
@@ -252,8 +252,8 @@ void equations(void)
 		if (coord[i].size)
 			vector_equation(i);
                 else if (i + 1 < coords && !coord[i + 1].size && coord[i].order == 2 && coord[i + 1].order == 2 &&
-                         chance(20))
-                    sketch(i++);
+						 chance(20))
+					sketch(i++);
 		else
 			scalar_equation(i);
 }

@@ -4,35 +4,35 @@
 1;
 
 function tell(name, good, varargin)
-    if ! good
-        for i = 1:numel(varargin)
-            disp(varargin{i});
-        end
-    end
-    words = {"bad", "good"};
-    printf("%s %s\n", words{1 + logical(good)}, name);
+	if ! good
+		for i = 1:numel(varargin)
+			disp(varargin{i});
+		end
+	end
+	words = {"bad", "good"};
+	printf("%s %s\n", words{1 + logical(good)}, name);
 end
 
 function r = rows_of(name, m, type)
-    f = fopen([name, ".rows"], "rb");
-    r = reshape(fread(f, Inf, type), numel(m.outputs) + 1, []).';
-    fclose(f);
+	f = fopen([name, ".rows"], "rb");
+	r = reshape(fread(f, Inf, type), numel(m.outputs) + 1, []).';
+	fclose(f);
 end
 
 function beside(name, m, y, type)
-    r = rows_of(name, m, type);
-    good = rows(y) > 10 && isequal(y, r(:, 2:end)) && isequal(m.t, r(:, 1));
-    tell([name, ": the rows and times of plmain.c"], good, size(y), size(r));
+	r = rows_of(name, m, type);
+	good = rows(y) > 10 && isequal(y, r(:, 2:end)) && isequal(m.t, r(:, 1));
+	tell([name, ": the rows and times of plmain.c"], good, size(y), size(r));
 end
 
 function refuses(name, expected, call)
-    said = "nothing was raised";
-    try
-        call();
-    catch why
-        said = why.message;
-    end
-    tell(["refuses ", name], strcmp(said, expected), expected, said);
+	said = "nothing was raised";
+	try
+		call();
+	catch why
+		said = why.message;
+	end
+	tell(["refuses ", name], strcmp(said, expected), expected, said);
 end
 
 root = argv(){end};
@@ -76,7 +76,7 @@ y = a.state;
 t = a.time;
 a.retune("m", 2.5);
 tell("another param: state, time and tuned ones stay", isequal(a.state, y) && a.time == t && a.params.k == 60 && ...
-     a.params.m == 2.5 && ! isfield(b.params, "m"), a.params, b.params);
+	 a.params.m == 2.5 && ! isfield(b.params, "m"), a.params, b.params);
 c = plgen_model("held.spec", "k", 60, "m", 2.5);
 c.put(y, t);
 tell("... and it goes on as the model of these params", isequal(a.run(record), c.run(record)));
@@ -103,12 +103,12 @@ m = model("sdcsf");
 y = m.at(0.01);
 z = m.step();
 tell("inside a step, and one", max(abs(y - m.state)) < 1e-15 && isequal(z, other.copy().out()) == false && ...
-     isequal(z, rows_of("sdcsf", m, "double")(2, 2:end)));
+	 isequal(z, rows_of("sdcsf", m, "double")(2, 2:end)));
 m.state = [1, 2, 3, 4];
 tell("a state read back, time stays", isequal(m.state, [1, 2, 3, 4]) && m.time == 0.01);
 m = plgen_model("held.spec");
 tell("names", isequal(m.states, {"x", "y", "x'", "y'"}) && isequal(m.inputs, {"push", "base"}) && ...
-     isequal(m.outputs, {"x", "y", "pull", "speed"}) && isequal(m.tunable, {"k", "c"}) && strcmp(m.name, "held"));
+	 isequal(m.outputs, {"x", "y", "pull", "speed"}) && isequal(m.tunable, {"k", "c"}) && strcmp(m.name, "held"));
 
 refuses("an unknown name as plgen does", ["<stdin>:3:13: error: unknown name 'foo'\nx'' + 4*x = foo\n" ...
         "            ^\nnote: did you mean 'cos'?"], @() plgen_model("model a\ncoord x\nx'' + 4*x = foo\nstep 0.1\n"));
@@ -123,21 +123,21 @@ refuses("a record too wide for one input", "expected rows of 1 numbers, the inpu
 refuses("a record that is no matrix", "expected rows of 1 numbers, the inputs", @() one.run({1, 2}));
 refuses("a jump where there is none", "plgen_mex: the model has no jump", @() plgen_model("held.spec").jump(3));
 refuses("the Phi of a stop", "stop: not linear, so it has no Phi: it would leave out max(x, 0)", ...
-        @() model("stop").Phi);
+		@() model("stop").Phi);
 
 m = plgen_model("held.spec", "k", 70.25);
 A = [0, 0, 1, 0; 0, 0, 0, 1; -70.25 / 2, 70.25 / 2, -0.3, 0.3; 70.25, -73.25, 0.6, -0.6];
 tell("Phi at the params of now", max(max(abs(m.Phi - expm(A / 64)))) < 1e-13, m.Phi - expm(A / 64));
 if ! isfield(m.explain, "ss")
-    disp("skip the state space: --explain=json tells none");
+	disp("skip the state space: --explain=json tells none");
 else
-    B = [0, 0; 0, 0; 0.5, 0; 0, 3];
-    C = [1, 0, 0, 0; 0, 1, 0, 0; 0, 70.25, 0, 0; 0, 0, 1, 0];
-    D = [0, 0; 0, 0; 0, -70.25; 0, 0];
-    tell("the state space", max(max(abs([m.ss.A, m.ss.B; m.ss.C, m.ss.D] - [A, B; C, D]))) < 1e-13 && ...
+	B = [0, 0; 0, 0; 0.5, 0; 0, 3];
+	C = [1, 0, 0, 0; 0, 1, 0, 0; 0, 70.25, 0, 0; 0, 0, 1, 0];
+	D = [0, 0; 0, 0; 0, -70.25; 0, 0];
+	tell("the state space", max(max(abs([m.ss.A, m.ss.B; m.ss.C, m.ss.D] - [A, B; C, D]))) < 1e-13 && ...
          max(max(abs(m.ss.discrete.A - expm(A / 64)))) < 1e-13 && isequal(m.ss.inputs(:), {"push"; "base"}), m.ss);
-    direct = C * ((2i * pi * 0.3 * eye(4) - A) \ B) + D;
-    r = m.response([0.3, 1]);
+	direct = C * ((2i * pi * 0.3 * eye(4) - A) \ B) + D;
+	r = m.response([0.3, 1]);
     tell("the response", isequal(size(r), [4, 2, 2]) && max(max(abs(r(:, :, 1) - direct))) < 1e-9, r(:, :, 1) - direct);
 end
 
@@ -146,62 +146,62 @@ fprintf(fid, "model late\ncoord x\ninput u\nx'' + 0.3*x' + x = u(t - 0.1) + 0.5*
 fclose(fid);
 late = plgen_model("late.spec");
 refuses("the state space of a delay", ["late: inputs are delayed, so it has no state space over them: it would " ...
-        "leave out u.delayed1; response counts them"], @() late.ss);
+		"leave out u.delayed1; response counts them"], @() late.ss);
 s = 2i * pi * [0.1, 0.5];
 direct = (exp(-0.1 * s) + 0.5) ./ (s .^ 2 + 0.3 * s + 1);
 tell("the response to a delayed input", isequal(size(late.response([0.1, 0.5])), [2, 1, 2]) && ...
      max(abs(late.response([0.1, 0.5])(1, 1, :)(:).' - direct)) < 1e-14, late.response([0.1, 0.5])(1, 1, :)(:).' - direct);
 bent = plgen_model(["model bent\ncoord x\ninput u\nx'' + 0.3*x' + sin(x) = u(t - 0.1) + 0.5*u\nstep 0.05\n"]);
 tell("that of its linear equations", max(abs(bent.response([0.1, 0.5], false, "rest")(1, 1, :)(:).' - direct)) < 1e-14, ...
-     bent.response([0.1, 0.5], false, "rest"));
+	 bent.response([0.1, 0.5], false, "rest"));
 
 scaled = ["model scaled\nparam m = 2 \"kg\", k = 0.1 \"N/mm\"\ntunable k\ncoord x \"mm\"\nm*x'' + k*x = 0\n", ...
-          "init x = 3 \"mm\"\nstep 0.01\n"];
+		  "init x = 3 \"mm\"\nstep 0.01\n"];
 m = plgen_model(scaled, "k", 0.25);
 other = plgen_model(scaled, "k", "0.25");
 y = m.run(50);
 tell("params in units of their own", m.params.k == 0.25 && isequal(plgen_model(scaled).params.k, 0.1) && ...
-     max(max(abs(y - other.run(50)))) < 1e-13 * max(max(abs(y))), m.params, y(end, :));
+	 max(max(abs(y - other.run(50)))) < 1e-13 * max(max(abs(y))), m.params, y(end, :));
 
 bent = ["model bent\nparam k = 3\ncoord x, y\ninput u\nx'' + 0.2*x' + sin(x) + x*y = u\ny' + k*y = x^2\n", ...
-        "init x = 0.5\noutput f = x*y\noutput x\nstep 0.01\nscheme taylor\n"];
+		"init x = 0.5\noutput f = x*y\noutput x\nstep 0.01\nscheme taylor\n"];
 slope = @(x, y) [0, 0, 1; 2 * x, -3, 0; -cos(x) - y, -x, -0.2];
 m = plgen_model(bent);
 [A, B, C, D] = m.linearise("x=0.25,y=0.5,x'=2");
 tell("at a point: by the derivatives written out", max(max(abs(A - slope(0.25, 0.5)))) < 1e-15 && ...
-     isequal(B, [0; 0; 1]) && max(max(abs(C - [0.5, 0.25, 0; 1, 0, 0]))) < 1e-15, A - slope(0.25, 0.5), C);
+	 isequal(B, [0; 0; 1]) && max(max(abs(C - [0.5, 0.25, 0; 1, 0, 0]))) < 1e-15, A - slope(0.25, 0.5), C);
 m.state = [0.125, 1, 0];
 tell("where it is now", max(max(abs(m.state_space(false, "now").A - slope(0.125, 1)))) < 1e-15);
 s = m.ss;
 [said, id] = lastwarn();
 tell("at rest without a word of where, and that is said", strcmp(id, "plgen:linearised") && ...
-     strcmp(s.at, "linearised at rest: x = 0, y = 0") && strcmp(said, ["bent: not linear, and ", s.at]) && ...
-     isequal(s.A, slope(0, 0)), said, s.at);
+	 strcmp(s.at, "linearised at rest: x = 0, y = 0") && strcmp(said, ["bent: not linear, and ", s.at]) && ...
+	 isequal(s.A, slope(0, 0)), said, s.at);
 p = sort(m.poles());
 tell("its poles", max(abs(p - sort(eig(slope(0, 0))))) < 1e-12, p);
 
 try
-    pkg load control
+	pkg load control
 catch
-    disp("skip lqr, lqe, c2d: no octave-control");
+	disp("skip lqr, lqe, c2d: no octave-control");
 end
 if exist("lqr", "file")
-    m = plgen_model("plain.spec");
-    [A, B, C, D] = m.linearise();
-    sys = ss(A, B, C, D);
-    Q = diag([100, 100, 1, 1]);
-    R = eye(2);
-    K = lqr(sys, Q, R);
-    [V, e] = eig([A, -B * B'; -Q, -A']);
-    V = V(:, real(diag(e)) < 0);
-    direct = real(B' * V(5:8, :) / V(1:4, :));
+	m = plgen_model("plain.spec");
+	[A, B, C, D] = m.linearise();
+	sys = ss(A, B, C, D);
+	Q = diag([100, 100, 1, 1]);
+	R = eye(2);
+	K = lqr(sys, Q, R);
+	[V, e] = eig([A, -B * B'; -Q, -A']);
+	V = V(:, real(diag(e)) < 0);
+	direct = real(B' * V(5:8, :) / V(1:4, :));
     tell("lqr: as the Hamiltonian's stable subspace", max(max(abs(K - direct))) < 1e-9 * max(abs(K(:))), K - direct);
-    L = lqe(A, B, C, eye(2), eye(4));
-    [V, e] = eig([A', -C' * C; -B * B', -A]);
-    V = V(:, real(diag(e)) < 0);
-    direct = real(V(5:8, :) / V(1:4, :)) * C';
-    tell("lqe: likewise", max(max(abs(L - direct))) < 1e-9 * max(abs(L(:))), L - direct);
-    step = c2d(sys, m.h);
+	L = lqe(A, B, C, eye(2), eye(4));
+	[V, e] = eig([A', -C' * C; -B * B', -A]);
+	V = V(:, real(diag(e)) < 0);
+	direct = real(V(5:8, :) / V(1:4, :)) * C';
+	tell("lqe: likewise", max(max(abs(L - direct))) < 1e-9 * max(abs(L(:))), L - direct);
+	step = c2d(sys, m.h);
     tell("c2d: the discrete one of plgen", max(max(abs([step.a - m.ss.discrete.A, step.b - m.ss.discrete.B]))) < 1e-13);
 end
 disp("end");

@@ -29,15 +29,15 @@ static void same_forms(void)
 			for (int i = 0; i < 4; i++) {
                             good = close_to(found[i], expected[i], 1e-11, "form_%s, h = %g, %s", forms[f],
                                             r.of->model->h, r.of->model->state_names[i]) &&
-                                   good;
-                            worst = worse(worst, fabs(found[i] - expected[i]));
+								   good;
+							worst = worse(worst, fabs(found[i] - expected[i]));
 			}
 			good = close_to((double)r.of->crossed(r.state), (double)plain.of->crossed(plain.state), 0,
 				"form_%s: crossings", forms[f]) && good;
 			good = close_to(r.of->model->status(r.state), 0, 0, "form_%s: status", forms[f]) && good;
                         ok(good, "form_%s, h = %g: as the table, %d crossings (largest difference %.2g)", forms[f],
-                           r.of->model->h, (int)plain.of->crossed(plain.state), worst);
-                        run_free(&r);
+						   r.of->model->h, (int)plain.of->crossed(plain.state), worst);
+						run_free(&r);
 		}
 		run_free(&plain);
 	}
@@ -94,8 +94,8 @@ static void by_hand(const char *name, int step, force *f, bool velocity, double 
 		in = crossing[i].upward;
 		if (!velocity)
                     good = close_to((double)y[0], at, 1e-10, "%s, h = %g: x at crossing %d", name, r.of->model->h, i) &&
-                           good;
-        }
+						   good;
+		}
 	runge_kutta(f, &t, y, end, in);
 	run_state(&r, found);
 	for (int i = 0; i < 2; i++)

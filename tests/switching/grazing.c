@@ -30,15 +30,15 @@ static void graze(const char *name, double b, int step, double p)
 	const int count = run_crossings(&r, end, MOST, time, crossing), expected = p > 0 ? 2 * PERIODS : 0;
 	bool good = close_to(count, expected, 0, "%s, h = %g, beyond by %g: crossings", name, h, p);
         /* at the root x is b to rounding; what rounding does to the state, in each step, moves it by that over the
-         * speed */
-        for (int i = 0; i < count && i < expected; i++) {
-            const double at = from + i / 2 * period + (i % 2 ? inside : 0),
-                         off = (5e-15 + 1.2e-16 * end / h) * (1 + b / speed);
+		 * speed */
+		for (int i = 0; i < count && i < expected; i++) {
+			const double at = from + i / 2 * period + (i % 2 ? inside : 0),
+						 off = (5e-15 + 1.2e-16 * end / h) * (1 + b / speed);
             good = close_to(time[i], at, off, "%s, h = %g, beyond by %g: crossing %d", name, h, p, i) && good;
             good = close_to(crossing[i].upward, i % 2 == 0, 0, "%s, h = %g, beyond by %g: direction of crossing %d",
-                            name, h, p, i) &&
-                   good;
-        }
+							name, h, p, i) &&
+				   good;
+		}
 	good = close_to(of->model->status(r.state), 0, 0, "status") && good;
 	run_state(&r, y);
 	/* energy: outside x'^2 + x^2 stays */
@@ -68,15 +68,15 @@ static void graze_moving(int step, double p)
 
 static void grazes(void)
 {
-    static const double beyond[] = { 1e-2, 1e-3,  1e-4, 1e-5,   1e-6,   1e-7,  1e-8,
+	static const double beyond[] = { 1e-2, 1e-3,  1e-4, 1e-5,   1e-6,   1e-7,  1e-8,
                                      1e-9, 1e-10, 0,    -1e-16, -1e-10, -1e-6, -1e-2 };
-    for (int step = 0; step < SIZES; step++)
-        for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
-            graze("graze", 1, step, beyond[i]);
-            graze("graze_large", 1000, step, beyond[i]);
-            graze("graze_small", 0.001, step, beyond[i]);
-            graze_moving(step, beyond[i]);
-        }
+	for (int step = 0; step < SIZES; step++)
+		for (size_t i = 0; i < sizeof beyond / sizeof *beyond; i++) {
+			graze("graze", 1, step, beyond[i]);
+			graze("graze_large", 1000, step, beyond[i]);
+			graze("graze_small", 0.001, step, beyond[i]);
+			graze_moving(step, beyond[i]);
+		}
 }
 
 /* x'' + x = 1 + f + j t outside, x'' + 11 x = 11 + f + j t inside; z = x - 1 from 0 at the speed v, while it stays
@@ -97,9 +97,9 @@ static void start(const char *name, double v, double f, double j, int side)
 		const double z = (f + j * t) / (w * w) - f / (w * w) * cos(w * t) + (v - j / (w * w)) / w * sin(w * t);
 		good = close_to(found[0], 1 + z, 1e-14, "%s, speed %g, h = %g: x", name, v, of->model->h) && good;
                 good = close_to((double)of->crossed(r.state), 0, 0, "%s, speed %g, h = %g: crossings", name, v,
-                                of->model->h) &&
-                       good;
-                ok(good, "%s, speed %g, h = %g: starts %s", name, v, of->model->h,
+								of->model->h) &&
+					   good;
+				ok(good, "%s, speed %g, h = %g: starts %s", name, v, of->model->h,
 			side > 0 ? "in" : side < 0 ? "out" : "at rest, and stays");
 		run_free(&r);
 	}

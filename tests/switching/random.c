@@ -53,7 +53,7 @@ static struct hand_state by_signs(const struct hand_system *s, real h)
 }
 
 static bool at_step(const struct hand_system *s, unsigned seed, int step, const struct run *fine, const double *y,
-    double size)
+	double size)
 {
 	const struct variant *of = variant_of(TABLE, KIND "%u_%d", seed, step);
 	struct run r = run_new(of);
@@ -63,13 +63,13 @@ static bool at_step(const struct hand_system *s, unsigned seed, int step, const 
 	run_state(&r, found);
 	const double off = apart(s, found, y, size);
 	sums.worst = worse(sums.worst, off);
-        const bool state_good =
-            close_to(off, 0, tolerance, KIND " %u, h = %g: end state, h = 0.005", seed, steps[step]);
+		const bool state_good =
+			close_to(off, 0, tolerance, KIND " %u, h = %g: end state, h = 0.005", seed, steps[step]);
         const bool count_good = close_to((double)of->crossed(r.state), (double)fine->of->crossed(fine->state), 0,
 		KIND " %u, h = %g: crossings", seed, steps[step]);
-        const bool status_good =
-            close_to(of->model->status(r.state), 0, 0, KIND " %u, h = %g: status", seed, steps[step]);
-        sums.states[step] += !state_good;
+		const bool status_good =
+			close_to(of->model->status(r.state), 0, 0, KIND " %u, h = %g: status", seed, steps[step]);
+		sums.states[step] += !state_good;
 	sums.counts[step] += !count_good;
 	sign = by_signs(s, steps[step]);
 	narrow(s, &sign, by_sign);
@@ -92,11 +92,11 @@ static void one(unsigned seed)
 	hand_reference(&s, &truth, SECONDS);
 	const double size = sizes(&s, truth.y);
 	narrow(&s, &truth, expected);
-        bool good =
+		bool good =
             close_to(apart(&s, y, expected, size), 0, tolerance, KIND " %u, h = 0.005: end state by hand", seed);
         good = close_to((double)count, (double)truth.crossings, 0, KIND " %u, h = 0.005: crossings by hand", seed) &&
-               good;
-        sums.worst_by_hand = worse(sums.worst_by_hand, apart(&s, y, expected, size));
+			   good;
+		sums.worst_by_hand = worse(sums.worst_by_hand, apart(&s, y, expected, size));
 	sums.crossings += count;
 	sums.systems++;
 	for (int step = 0; step < STEPS; step++)
@@ -115,8 +115,8 @@ int main(void)
 	     SECONDS, sums.worst, sums.worst_by_hand);
 	for (int step = 0; step < STEPS; step++)
             note("h = %-3g here: %d wrong states, %d wrong counts; signs at the ends of steps: %d wrong states, %d "
-                 "wrong "
-                 "counts",
+				 "wrong "
+				 "counts",
                  steps[step], sums.states[step], sums.counts[step], sums.sign_states[step], sums.sign_counts[step]);
-        return tap_end();
+		return tap_end();
 }

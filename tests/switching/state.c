@@ -18,17 +18,17 @@ static double sample(int k)
 }
 
 static bool same(const pl_model *m, const double *found, const double *expected, int n, double tolerance,
-    const char *what, int k)
+	const char *what, int k)
 {
 	bool good = true;
 	for (int i = 0; i < n; i++) {
             /* what is summed in another order is off by rounding, which is more where the state has grown large */
-            const double rounding = 4 * DBL_EPSILON * fabs(expected[i]);
+			const double rounding = 4 * DBL_EPSILON * fabs(expected[i]);
             good = close_to(found[i], expected[i], fmax(tolerance, rounding), "%s, h = %g, after %d steps: %s %d",
-                            m->name, m->h, k, what, i) &&
-                   good;
-        }
-        return good;
+							m->name, m->h, k, what, i) &&
+				   good;
+		}
+		return good;
 }
 
 /* step against run in pieces, and at over a whole step and over two parts of it */
@@ -61,9 +61,9 @@ static void functions(const struct variant *of)
 		for (int i = 0; i < found; i++)
                     listed = crossing[i].time >= (i ? crossing[i - 1].time : 0) && crossing[i].time <= m->h && listed;
                 listed = close_to((double)of->crossed(one), (double)total, 0, "%s, h = %g: crossings listed so far",
-                                  m->name, m->h) &&
-                         listed;
-                double after[MOST_STATES];
+								  m->name, m->h) &&
+						 listed;
+				double after[MOST_STATES];
 		m->get(one, after);
 		ats = same(m, x, after, m->states, 1e-13, "at h, state", k) && ats;
 		if (m->inputs)
@@ -217,19 +217,19 @@ static void bump(void)
 		for (int i = 0; i < found; i++) {
 			if (crossing[i].expression != 0)
 				continue;
-                        const double at = crossing[i].breakpoint ? 0.2
+						const double at = crossing[i].breakpoint ? 0.2
                                                                  : 0.1; /* of x - w: the second is 2 w - 2 x at -0.4 */
-                        const bool up = before[0] - w[0] < at;
-                        good = close_to(crossing[i].upward, up, 0,
+						const bool up = before[0] - w[0] < at;
+						good = close_to(crossing[i].upward, up, 0,
                                         "bump, step %d: x - w from %g to %g through %g, upward", k, before[0] - w[0],
-                                        after[0] - w[0], at) &&
-                               good;
-                        passed[crossing[i].upward]++;
+										after[0] - w[0], at) &&
+							   good;
+						passed[crossing[i].upward]++;
 		}
 	}
-        ok(good && passed[0] > 0 && passed[1] > 0,
+		ok(good && passed[0] > 0 && passed[1] > 0,
            "bump: x - w passes 0.1 and 0.2 %d times upward, %d times downward, each told so", passed[1], passed[0]);
-        run_free(&r);
+		run_free(&r);
 }
 
 int main(void)

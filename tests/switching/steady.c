@@ -146,17 +146,17 @@ static void compare(int tenths, struct swing published)
 	for (int step = 0; step < 2; step++) {
 		const struct variant *of = variant_of(steady_table, "steady_%d_%d", tenths, step);
 		const struct swing found = by_steps(of, eta);
-                const bool good = close_to(found.amplitude, expected.amplitude, tolerance,
+				const bool good = close_to(found.amplitude, expected.amplitude, tolerance,
                                            "eta = %g, h = %g: amplitude", eta, of->model->h);
                 ok(close_to(found.mean, expected.mean, tolerance, "eta = %g, h = %g: mean", eta, of->model->h) && good,
                    "eta = %g, h = %g: amplitude %.7f, mean %.7f; by harmonics %.7f, %.7f", eta, of->model->h,
-                   found.amplitude, found.mean, expected.amplitude, expected.mean);
-                const bool known = close_to(found.amplitude, published.amplitude, 6e-5,
+				   found.amplitude, found.mean, expected.amplitude, expected.mean);
+				const bool known = close_to(found.amplitude, published.amplitude, 6e-5,
                                             "eta = %g, h = %g: known amplitude", eta, of->model->h);
                 ok(close_to(found.mean, published.mean, 3e-4, "eta = %g, h = %g: known mean", eta, of->model->h) &&
-                       known,
-                   "eta = %g, h = %g: amplitude and mean known before", eta, of->model->h);
-        }
+					   known,
+				   "eta = %g, h = %g: amplitude and mean known before", eta, of->model->h);
+		}
 }
 
 int main(void)

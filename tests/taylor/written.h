@@ -44,9 +44,9 @@
 
 #if PL_SWITCHING_FUNCTIONS
 typedef struct PL(contact) {
-    uint64_t total;
-    int crossings, placed, interval[1];
-    pl_crossing last, crossing[PL_MAX_EVENTS];
+	uint64_t total;
+	int crossings, placed, interval[1];
+	pl_crossing last, crossing[PL_MAX_EVENTS];
 } PL(contact);
 
 static const int PL(column)[] = {0}, PL(breaks)[] = {1};
@@ -56,13 +56,13 @@ static const pl_series_switching PL(series_switching) = {1,          PL_COLUMNS,
 #endif
 
 typedef struct MODEL {
-    real y[MODEL_STATES], low[MODEL_STATES], t0;
-    uint64_t k;
-    int status, served, valid, most;
-    real series[PL_ORDER + 1][MODEL_STATES], base[MODEL_STATES], next[MODEL_STATES], left[MODEL_STATES];
-    real scale[MODEL_STATES], unit[MODEL_STATES];
+	real y[MODEL_STATES], low[MODEL_STATES], t0;
+	uint64_t k;
+	int status, served, valid, most;
+	real series[PL_ORDER + 1][MODEL_STATES], base[MODEL_STATES], next[MODEL_STATES], left[MODEL_STATES];
+	real scale[MODEL_STATES], unit[MODEL_STATES];
 #if PL_SWITCHING_FUNCTIONS
-    PL(contact) contact;
+	PL(contact) contact;
 #endif
 } MODEL;
 
@@ -71,19 +71,19 @@ static const real PL(last)[1] = {PL_TOLERANCE}, PL(before_last)[1] = {PL_TOLERAN
 static inline void PL(expand_from)(const MODEL *s, const real u[], const real slope[], real tau, real when, int segment,
                                    const int interval[], const real y[], real c[][MODEL_STATES], real terms[])
 {
-    (void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
+	(void)s, (void)u, (void)slope, (void)tau, (void)when, (void)segment, (void)interval, (void)terms;
 #if PL_SWITCHING_FUNCTIONS
-    PL(series_in)(y, PL_H, interval, c);
-    terms[0] = pl_magnitude(y[0]);
+	PL(series_in)(y, PL_H, interval, c);
+	terms[0] = pl_magnitude(y[0]);
 #else
-    PL(series)(y, PL_H, c);
+	PL(series)(y, PL_H, c);
 #endif
 }
 
 static inline void PL(pass_time)(MODEL *s, const real u[])
 {
-    (void)u;
-    s->k++;
+	(void)u;
+	s->k++;
 }
 
 #include "taylor.h"
