@@ -19,104 +19,104 @@ typedef FMI_TYPE(Status) fmi_status;
 
 static fmi_status status_of(enum fmu_result result)
 {
-    return result == FMU_OK ? FMI_TYPE(OK) : result == FMU_WARNING ? FMI_TYPE(Warning) : FMI_TYPE(Error);
+	return result == FMU_OK ? FMI_TYPE(OK) : result == FMU_WARNING ? FMI_TYPE(Warning) : FMI_TYPE(Error);
 }
 
 static const char *category_of(enum fmu_result result)
 {
-    return result == FMU_WARNING ? fmu_category_warning : fmu_category_error;
+	return result == FMU_WARNING ? fmu_category_warning : fmu_category_error;
 }
 
 FMI_EXPORT const char *FMI(GetVersion)(void)
 {
-    return FMI_TYPE(Version);
+	return FMI_TYPE(Version);
 }
 
 FMI_EXPORT fmi_status FMI(SetDebugLogging)(fmi_instance c, FMI_TYPE(Boolean) loggingOn, size_t nCategories,
-    const FMI_TYPE(String) categories[])
+	const FMI_TYPE(String) categories[])
 {
-    return c ? status_of(fmu_logging((fmu_instance *)c, loggingOn != 0, nCategories, categories)) : FMI_TYPE(Error);
+	return c ? status_of(fmu_logging((fmu_instance *)c, loggingOn != 0, nCategories, categories)) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT void FMI(FreeInstance)(fmi_instance c)
 {
-    free(c);
+	free(c);
 }
 
 /* ---- from mode to mode ---- */
 
 FMI_EXPORT fmi_status FMI(ExitInitializationMode)(fmi_instance c)
 {
-    return c ? status_of(fmu_leave((fmu_instance *)c, FMI_NAME(ExitInitializationMode))) : FMI_TYPE(Error);
+	return c ? status_of(fmu_leave((fmu_instance *)c, FMI_NAME(ExitInitializationMode))) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT fmi_status FMI(Terminate)(fmi_instance c)
 {
-    return c ? status_of(fmu_end((fmu_instance *)c, FMI_NAME(Terminate))) : FMI_TYPE(Error);
+	return c ? status_of(fmu_end((fmu_instance *)c, FMI_NAME(Terminate))) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT fmi_status FMI(Reset)(fmi_instance c)
 {
-    if (!c) {
-        return FMI_TYPE(Error);
-    }
-    fmu_begin(&((fmu_instance *)c)->data);
-    return FMI_TYPE(OK);
+	if (!c) {
+		return FMI_TYPE(Error);
+	}
+	fmu_begin(&((fmu_instance *)c)->data);
+	return FMI_TYPE(OK);
 }
 
 /* ---- saved states ---- */
 
 FMI_EXPORT fmi_status FMI_STATE(Get, )(fmi_instance c, fmi_saved *saved)
 {
-    return c && saved ? status_of(fmu_save((fmu_instance *)c, saved)) : FMI_TYPE(Error);
+	return c && saved ? status_of(fmu_save((fmu_instance *)c, saved)) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT fmi_status FMI_STATE(Set, )(fmi_instance c, fmi_saved saved)
 {
-    return c ? status_of(fmu_restore((fmu_instance *)c, saved)) : FMI_TYPE(Error);
+	return c ? status_of(fmu_restore((fmu_instance *)c, saved)) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT fmi_status FMI_STATE(Free, )(fmi_instance c, fmi_saved *saved)
 {
-    if (saved) {
-        free(*saved);
-        *saved = NULL;
-    }
-    return FMI_TYPE(OK);
+	if (saved) {
+		free(*saved);
+		*saved = NULL;
+	}
+	return FMI_TYPE(OK);
 }
 
 FMI_EXPORT fmi_status FMI_STATE(Serialized, Size)(fmi_instance c, fmi_saved saved, size_t *size)
 {
-    if (!c || !size) {
-        return FMI_TYPE(Error);
-    }
-    *size = sizeof(fmu_saved);
-    return FMI_TYPE(OK);
+	if (!c || !size) {
+		return FMI_TYPE(Error);
+	}
+	*size = sizeof(fmu_saved);
+	return FMI_TYPE(OK);
 }
 
 FMI_EXPORT fmi_status FMI_STATE(Serialize, )(fmi_instance c, fmi_saved saved, FMI_TYPE(Byte) bytes[], size_t size)
 {
-    return c ? status_of(fmu_serialize((fmu_instance *)c, saved, bytes, size)) : FMI_TYPE(Error);
+	return c ? status_of(fmu_serialize((fmu_instance *)c, saved, bytes, size)) : FMI_TYPE(Error);
 }
 
 FMI_EXPORT fmi_status FMI_DESERIALIZE(fmi_instance c, const FMI_TYPE(Byte) bytes[], size_t size,
-    fmi_saved *saved)
+	fmi_saved *saved)
 {
-    return c && saved ? status_of(fmu_deserialize((fmu_instance *)c, bytes, size, saved)) : FMI_TYPE(Error);
+	return c && saved ? status_of(fmu_deserialize((fmu_instance *)c, bytes, size, saved)) : FMI_TYPE(Error);
 }
 
 /* ---- what this FMU does not offer: events, model exchange ---- */
 
 #define ABSENT(function, parameters) \
-    FMI_EXPORT fmi_status FMI(function) parameters \
-    { \
-        return status_of(fmu_absent((fmu_instance *)c, FMI_NAME(function))); \
-    }
+	FMI_EXPORT fmi_status FMI(function) parameters \
+	{ \
+		return status_of(fmu_absent((fmu_instance *)c, FMI_NAME(function))); \
+	}
 
 ABSENT(EnterEventMode, (fmi_instance c))
 ABSENT(EnterContinuousTimeMode, (fmi_instance c))
 ABSENT(CompletedIntegratorStep, (fmi_instance c, FMI_TYPE(Boolean) noSetFMUStatePriorToCurrentPoint,
-                                 FMI_TYPE(Boolean) *enterEventMode, FMI_TYPE(Boolean) *terminateSimulation))
+					 FMI_TYPE(Boolean) *enterEventMode, FMI_TYPE(Boolean) *terminateSimulation))
 ABSENT(SetTime, (fmi_instance c, double time))
 ABSENT(SetContinuousStates, (fmi_instance c, const double x[], size_t nx))
 ABSENT(GetContinuousStates, (fmi_instance c, double x[], size_t nx))
