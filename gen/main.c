@@ -380,13 +380,19 @@ static void print_header(struct work *w)
 	file_close(w->header);
 }
 
+/* A kernel that takes whole steps has the model's header */
+static bool has_whole_step(const struct work *w)
+{
+	return w->options.target && strstr(w->text->text, "_DECLARED\n");
+}
+
 /* The runtime's algorithms are in the file where all of the runtime is, or where they use the model's name. */
 static void rewrite(struct work *w, struct file *f)
 {
 	const char *name = w->model->delays ? w->model->delays->name : w->model->name;
 	if (w->options.bundle || w->options.fmu.path || w->options.target || algorithms_use(f->text, name))
 		file_rewrite(f, name, print_included);
-	if (w->options.request.own_math)
+	if (w->options.request.own_math || (has_whole_step(w) && !w->options.request.single))
 		file_rewrite(f, name, print_own_functions);
 	if (w->options.request.single)
 		file_rewrite(f, name, print_single);
@@ -402,10 +408,14 @@ static void rewrite_code(struct work *w)
 	rewrite(w, w->text);
 	if (w->header)
 		rewrite(w, w->header);
-	if (w->options.bundle || w->options.fmu.path)
+	if (w->options.bundle || w->options.fmu.path || has_whole_step(w))
 		bundle(w->text, w->header, w->options.fmu.path ? runtime_text("plfmu.h") : NULL,
 		       w->options.request.single,
 		       varied ? two_words ? "_compensated_d" : "_d" : two_words ? "_compensated" : NULL);
+	if (has_whole_step(w))
+		file_rewrite(w->text, w->model->delays ? w->model->delays->name : w->model->name,
+			     *w->options.target == 'o' && w->options.target[4] == 'c' ? print_opencl
+			     : *w->options.target == 'o' ? print_openmp : print_cuda);
 	if (w->options.print == PRINT_HEADER)
 		mark_pair(NULL, w->text);
 	else if (w->header)

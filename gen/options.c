@@ -142,7 +142,7 @@ static void take_target(struct options *options, const char *value)
 		wrong_usage(format("--target takes opencl, cuda or openmp, found '%s'", value));
 	set_print(options, PRINT_KERNEL);
 	options->target = value;
-	options->request.batch = true;
+	options->request.many.batch = options->request.many.device = true;
 	note_in_banner(options, format("--target %s", value));
 }
 
@@ -311,7 +311,7 @@ static const struct row {
 	{ "depfile", "FILE", "also write a make/ninja dependency file", .text = AT(depfile) },
 	{ "selftest", NULL, "also emit NAME_selftest: steps against the closed form", .flag = AT(request.selftest) },
 	{ "batch", NULL, "also emit NAME_batch: many instances in one call",
-	  .flag = AT(request.batch) },
+	  .flag = AT(request.many.batch) },
 	{ "fmu", "FILE.fmu", "write an FMU for co-simulation, with its C as source", .text = AT(fmu) },
 	{ "fmu-version", "2", "of FMI: 2 or 3 (default: 3)", .take = take_fmu_version },
 	{ "fmu-binary", "[=DIR]", "compiled too; with DIR against the standard's headers there",
@@ -511,7 +511,7 @@ void read_options(int argc, char **argv, struct options *options)
 	read_parts_from(data_folder("parts", "share/parts", "road_iso8608.spec", NULL, NULL));
 	take_all(argc, argv, options);
 	take_page(options);
-	options->request.phasors = options->request.fast || options->request.batch || options->fmu.path;
+	options->request.phasors = options->request.fast || options->request.many.batch || options->fmu.path;
 	if (options->request.external && (options->request.sensitivity || options->request.single || options->fmu.path))
 		wrong_usage(format("--external casadi has derivatives by states and inputs, in doubles: without %s",
 				   options->request.sensitivity ? "--sensitivity" : options->fmu.path ? "--fmu"

@@ -75,7 +75,7 @@ long divide_motion(struct request *request, mpq_srcptr h, mpq_srcptr end)
 struct request request_of_motion(const struct request *given)
 {
 	struct request request = *given;
-	request.solution = request.reduce = request.single = request.selftest = request.batch = false;
+	request.solution = request.reduce = request.single = request.selftest = request.many.batch = false;
 	request.fast = request.phasors = false;
 	request.modes = request.linear.where = NULL;
 	request.rows = 0;

@@ -139,7 +139,7 @@ static void check_fmu(const struct options *options)
 	const struct { bool requested; const char *option; } against[] = {
 		{ options->output, "-o" }, { options->print != PRINT_C, option_of_print(options->print) },
 		{ options->rhs, "--rhs" }, { options->request.selftest, "--selftest" },
-		{ options->request.batch, "--batch" }, { options->bundle, "--bundle" }
+		{ options->request.many.batch, "--batch" }, { options->bundle, "--bundle" }
 	};
 	if (!options->fmu.path && (options->fmu.version || options->fmu.binary))
 		wrong_usage(format("%s goes with --fmu FILE.fmu",
@@ -158,7 +158,7 @@ static void check_live_page(const struct options *options)
 	const struct { bool requested; const char *option; } against[] = {
 		{ options->output, "-o" }, { options->fmu.path, "--fmu" }, { options->a2l, "--a2l" },
 		{ options->print != PRINT_C, option_of_print(options->print) }, { options->rhs, "--rhs" },
-		{ options->request.selftest, "--selftest" }, { options->request.batch, "--batch" },
+		{ options->request.selftest, "--selftest" }, { options->request.many.batch, "--batch" },
 		{ options->look.dark && !options->page_in_report, "--dark" },
 		{ options->request.single, "--real float" }, { options->request.sensitivity, "--sensitivity" }
 	};

@@ -9,7 +9,9 @@
  *     PL_GROUPS                      of lanes, that step in turns: sums of one wait for none of their own
  *     PL_SHARED                      numbers of a step that instances share: `now`
  *     PL_FACTORS, PL_LANES           that params decide: of an instance; of these those that lanes read
- *     PL_RAMPS, PL_SHARES            whether there are PL(hold), PL(batch_share)
+ *     PL_RAMPS                       whether there is PL(hold)
+ *     PL_SHARES, PL_NOW              of PL(batch_share): 1: a row is `now`, 2: PL_HEAD, then inputs; its numbers
+ *     PL_HEAD                        bytes at the head of PL_TYPE that hold all that instances share
  *     PL_TUNED                       whether what params decide is of one step: member h
  *
  *     PL(factor_at)[PL_FACTORS]               where in PL_TYPE each is
@@ -42,12 +44,13 @@
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
 #define PL_HAS(count) ((count) > 0 ? (count) : 1) /* no array is empty */
+#ifndef PL_NOW
+#define PL_NOW PL_SHARED
+#endif
 #if PL_OVER > 0
 #define PL_AHEAD 16 /* the struct of each step ahead is kept */
-#define PL_HEAD sizeof(PL_TYPE)
 #else
 #define PL_AHEAD 64
-#define PL_HEAD offsetof(PL_TYPE, crossing)
 #endif
 #if PL_FLUSHES > 0
 #define PL_READY(k) (PL_AHEAD - (size_t)((k) & (PL_AHEAD - 1))) /* up to where a step flushes */
@@ -563,13 +566,11 @@ static int PL(many_status)(const void *b, size_t j)
     return PL(batch_status)((const PL_INSTANCES *)b, j);
 }
 
-#if PL_SHARES
 static void PL(many_share)(void *b, size_t n, const real *u, real *now)
 {
     (void)u;
     PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
 }
-#endif
 
 const pl_many PL(many) = {
     sizeof(PL_INSTANCES), PL_ROWS, PL_FACTORS, PL(many_init),
@@ -578,12 +579,7 @@ const pl_many PL(many) = {
 #else
     NULL,
 #endif
-    PL(many_retune), PL(many_run), PL(many_status), PL_SHARED,
-#if PL_SHARES
-    PL(many_share)
-#else
-    NULL
-#endif
+    PL(many_retune), PL(many_run), PL(many_status), PL_NOW, PL(many_share)
 };
 #endif
 

@@ -4,6 +4,8 @@
  *
  *     PL_TYPE, PL_INSTANCES          one instance, and the struct that the header has of many
  *     PL_ROWS                        numbers that one PL_TYPE takes up
+ *     PL_PARAMS, PL_TUNED            above 0: PL(retune), PL(use) with tunable params, of one step: member h
+ *     PL_RAMPS                       whether there is PL(hold)
  *     PL_STATES, PL_INPUTS, PL_OUTPUTS */
 #include "numbers.h"
 
@@ -118,5 +120,97 @@ void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
         PL(batch_take)(b, 0, &b->shared);
     }
 }
+
+/* For kernels: what instances share, the inputs */
+void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
+{
+    size_t k;
+    for (k = 0; k < n; k++) {
+#if PL_INPUTS > 0
+        now += PL_INPUTS;
+        memcpy(now, u, PL_INPUTS * sizeof *u);
+#endif
+        PL(step)(&b->shared PL_GIVEN);
+#if PL_INPUTS > 0
+        u += PL_INPUTS;
+#endif
+    }
+    (void)now;
+}
+
+#if PL_PARAMS > 0
+/* ---- NAME_many, as of batch.h ---- */
+
+static void PL(many_init)(void *to, size_t count, real *y, real *factors, real *peak)
+{
+    PL_INSTANCES *const b = (PL_INSTANCES *)to;
+    (void)factors;
+    b->count = count;
+    b->y = y;
+    b->peak = peak;
+    PL(batch_init)(b);
+}
+
+#if PL_RAMPS
+static void PL(many_hold)(void *to, const real *u)
+{
+    PL_INSTANCES *const b = (PL_INSTANCES *)to;
+    size_t j;
+    PL(hold)(&b->shared, u);
+    for (j = 0; j < b->count; j++) {
+        PL_TYPE one;
+        PL(batch_take)(b, j, &one);
+        PL(hold)(&one, u);
+        PL(batch_give)(b, j, &one);
+    }
+}
+#endif
+
+static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
+{
+    PL_INSTANCES *const b = (PL_INSTANCES *)to;
+    PL(coeffs) c = PL(nominal);
+#if PL_TUNED
+    const int status = PL(retune)(&c, params, c.h);
+#else
+    const int status = PL(retune)(&c, params, PL_H);
+#endif
+    if (status == 0) {
+        PL_TYPE one;
+        PL(batch_take)(b, j, &one);
+        PL(use)(&one, &c);
+        PL(out)(&one, out);
+        PL(batch_begin)(b, j, &one);
+    }
+    return status;
+}
+
+static void PL(many_run)(void *b, size_t n, const real *u, real *out)
+{
+    (void)u;
+    PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
+}
+
+static int PL(many_status)(const void *b, size_t j)
+{
+    return PL(batch_status)((const PL_INSTANCES *)b, j);
+}
+
+static void PL(many_share)(void *b, size_t n, const real *u, real *now)
+{
+    (void)u;
+    PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
+}
+
+const pl_many PL(many) = {
+    sizeof(PL_INSTANCES), PL_ROWS, 0, PL(many_init),
+#if PL_RAMPS
+    PL(many_hold),
+#else
+    NULL,
+#endif
+    PL(many_retune), PL(many_run), PL(many_status), PL_INPUTS, PL(many_share)
+};
+#endif
 
 #include "undef.h"

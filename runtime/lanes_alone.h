@@ -434,18 +434,36 @@ static void PL(lanes_look)(const PL_INSTANCES *b, size_t j, const pl_lanes *star
 
 /* ---- for kernels: what instances share ---- */
 
-#if PL_SHARES
+/* What instances share before a step, for work items that take whole ones */
+static void PL(share_head)(const PL_TYPE *s, real *now)
+{
+#if PL_SHARES > 1
+    memcpy(now, s, PL_HEAD);
+#else
+    PL(share_out)(s, now);
+#endif
+}
+
 void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
 {
     size_t k;
-    PL(share_out)(&b->shared, now);
+#if PL_SHARES > 1
+    real unread[PL_HAS(PL_SHARED)];
+#endif
+    PL(share_head)(&b->shared, now);
     for (k = 0; k < n; k++) {
-        now += PL_SHARED;
+        now += PL_NOW;
+#if PL_SHARES > 1
+#if PL_INPUTS > 0
+        memcpy(now + (PL_NOW - PL_INPUTS), u, PL_INPUTS * sizeof *u);
+#endif
+        PL(share_step)(&b->shared, PL_THE_INPUTS, unread);
+#else
         PL(share_step)(&b->shared, PL_THE_INPUTS, now);
-        PL(share_out)(&b->shared, now);
+#endif
+        PL(share_head)(&b->shared, now);
 #if PL_INPUTS > 0
         u += PL_INPUTS;
 #endif
     }
 }
-#endif

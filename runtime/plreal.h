@@ -467,7 +467,7 @@ typedef struct pl_many {
     int (*retune)(void *b, size_t j, const PL_REAL *params, PL_REAL *out); /* instance j; out: its outputs now */
     void (*run)(void *b, size_t n, const PL_REAL *u, PL_REAL *out); /* n steps; out: n x outputs x count, or NULL */
     int (*status)(const void *b, size_t j);
-    int shared; /* numbers that instances share in a step; NAME_batch_share, NULL where NAME_kernel has no use of it */
+    int shared; /* numbers of a row that NAME_batch_share writes for NAME_kernel */
     void (*share)(void *b, size_t n, const PL_REAL *u, PL_REAL *now);
 } pl_many;
 

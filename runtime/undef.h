@@ -98,6 +98,9 @@
 #undef PL_GLOBAL
 #undef PL_KERNEL
 #undef PL_OWN_FUNCTION
+#undef PL_WHOLE
+#undef PL_ROW
+#undef PL_NOW
 #undef PL_SIZE_TYPE
 #undef PL_OUT_ALONE
 #undef PL_SCALED

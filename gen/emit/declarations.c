@@ -187,7 +187,9 @@ static void emit_functions(const struct emitter *e, bool rhs)
 	if (has_jump(e))
 		announce(e, spell(e, "void   $n_jump($n *s, uint64_t n);"), "as n steps would, in log n time");
 	emit_held_declarations(e);
-	if (e->model->request.batch && !e->model->delays)
+	if (e->model->request.many.device)
+		return;
+	if (e->model->request.many.batch && !e->model->delays)
 		emit_batch_declarations(e);
 	declare_checks(e, rhs);
 	declare_tables(e);

@@ -205,7 +205,7 @@ static void emit_further_functions(const struct emitter *e, bool rhs)
 		emit_if_any(e->prints->at, e);
 	if (has_jump(e))
 		emit_jump(e);
-	if (e->model->request.batch && !e->model->delays)
+	if (e->model->request.many.batch && !e->model->delays)
 		emit_batch(e);
 	if (e->model->request.selftest && !e->model->delays)
 		emit_selftest(e, has_jump(e));
@@ -246,7 +246,22 @@ void emit_device(FILE *to, const struct step *step, const char *options, const c
 {
 	struct emitter e = emitter_new(to, step, options);
 	emit_banner(&e);
-	emit_kernel(&e, target);
+	if (!is_whole_on_device(&e)) {
+		emit_kernel(&e, target);
+		return;
+	}
+	if (step->model->request.single && (forms_need_math(&e) || constraints_need_math(&e)))
+		error(step->model->spec->name_at, "those of double are the runtime's, as with --math own",
+		      "--target %s: functions in float have other bits on a device", target);
+	emit_if_any(e.prints->events, &e);
+	emit_declarations(&e, false);
+	if (e.model->delays)
+		emit_delay_declarations(&e);
+	emit_declared_tables(&e);
+	emit_motion_of(&e, false);
+	if (has_jump(&e))
+		emit_jump(&e);
+	(e.model->delays ? emit_delays_on_device : emit_whole_kernel)(&e, target);
 }
 
 void emit_code(FILE *to, const struct step *step, const char *options, const char *header_name, bool rhs)

@@ -79,10 +79,12 @@ void emit_delay_declarations(const struct emitter *core)
 	declare_driven_step(e, "one step of h");
 	if (tunables_of(e->model))
 		declare_params(e);
-	if (e->model->request.batch)
+	if (e->model->request.many.batch && !e->model->request.many.device)
 		emit_batch_declarations(e);
-	declare_selftest(e);
-	declare_model(e);
+	if (!e->model->request.many.device) {
+		declare_selftest(e);
+		declare_model(e);
+	}
 	close_declarations(e);
 	if (e->step->derivatives)
 		emit_derivative_declarations(e);
@@ -159,14 +161,26 @@ static void emit_samples_of_core(const struct emitter *e)
 	       "#include \"delays.h\"\n");
 }
 
+static void emit_around(const struct emitter *e)
+{
+	say(e, "\n/* ---- $n: the samples of delayed inputs ---- */\n");
+	emit_samples_of_core(e);
+}
+
+void emit_delays_on_device(const struct emitter *core, const char *target)
+{
+	const struct emitter outer = around(core), *e = &outer;
+	emit_around(e);
+	emit_whole_kernel(e, target);
+}
+
 void emit_delays(const struct emitter *core)
 {
 	const struct emitter outer = around(core), *e = &outer;
-	say(e, "\n/* ---- $n: the samples of delayed inputs ---- */\n");
-	emit_samples_of_core(e);
+	emit_around(e);
 	if (e->step->derivatives)
 		emit_derivatives_around(e);
-	if (e->model->request.batch)
+	if (e->model->request.many.batch)
 		emit_batch(e);
 	if (e->model->request.selftest)
 		emit_selftest(e, false);

@@ -12,6 +12,8 @@ rewriter print_included;        /* the runtime's algorithms in the place of the 
 rewriter print_own_functions;   /* functions of the runtime in the place of those of <math.h> */
 rewriter print_single;          /* C for double as C for float */
 rewriter print_apart;           /* no local is called as the model */
+/* emit_kernel.c: C with the runtime inside as that of a device, each function static */
+rewriter print_opencl, print_cuda, print_openmp;
 bool algorithms_use(const char *text, const char *name);     /* is it a word of what the text includes, or a header? */
 
 /* ---- printed.c: C that was printed, read again ---- */

@@ -58,6 +58,7 @@ const char *head_of_step(const struct emitter *e);
 
 void emit_delay_declarations(const struct emitter *core);
 void emit_delays(const struct emitter *core);
+void emit_delays_on_device(const struct emitter *core, const char *target);
 
 void emit_out(const struct emitter *e);
 int  slopes_of_outputs(const struct model *model);
@@ -97,6 +98,9 @@ void emit_normal_tables(const struct emitter *e);
 
 void emit_batch_declarations(const struct emitter *e);
 void emit_batch(const struct emitter *e);
-void emit_kernel(const struct emitter *e, const char *target);   /* emit_kernel.c; leaves the statement */
+/* emit_kernel.c: by the sums of lanes, or by NAME_step, whose C stands before it and print_opencl rewrites */
+bool is_whole_on_device(const struct emitter *e);
+void emit_kernel(const struct emitter *e, const char *target);
+void emit_whole_kernel(const struct emitter *e, const char *target);
 
 #endif

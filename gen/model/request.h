@@ -48,7 +48,7 @@ struct request {                    /* what the user asks for on the command lin
 	bool fast;                  /* tables for long runs on a workstation: rows of outputs, rotated phasors */
 	bool phasors;               /* of these the phasors, which pay in every step: of --fast, batches and FMUs */
 	int rows;                   /* in a block of NAME_run; 0: with `fast` as many as serve best, else none */
-	bool batch;                 /* NAME_batch */
+	struct { bool batch, device; } many; /* NAME_batch; of its C only what a device takes */
 	enum step_form form;
 	int refresh;                /* steps from one evaluation of a load's functions to the next; 0: see `phasors` */
 	struct {                    /* a point at which the equations are made linear */

@@ -50,7 +50,7 @@ static char *model_text(const struct step *step, enum running_with with)
 	struct step tangent = *step;
 	struct model model = *step->model;
 	struct printing p;
-	model.request.batch = model.request.selftest = model.request.own_math = false;
+	model.request.many.batch = model.request.selftest = model.request.own_math = false;
 	tangent.model = &model;
 	start_text(&p);
 	emit_code(p.to, &tangent, "", NULL, with & WITH_RHS);

@@ -54,7 +54,7 @@ static struct request request_of_derivatives(const struct step *step, int first,
 		request.prefix = format("%s_d%d", step->model->name, first);
 	request.modes = NULL;
 	request.reduce = request.compensated = request.selftest = false;
-	request.fast = request.phasors = request.batch = false;
+	request.fast = request.phasors = request.many.batch = false;
 	request.rows = request.refresh = 1;
 	request.form = step->form == FORM_DIRECT ? FORM_DIRECT : FORM_DELTA;
 	return request;

@@ -12,7 +12,7 @@ struct descriptor descriptor_of(const struct model *model)
 		.flow = flow_of(model),
 		.events = regions ? EVENTS_OF_REGIONS : follows_crossings(model) ? EVENTS_SPLIT : EVENTS_NONE,
 		.tuned = !regions && model->params.tuning, .two_words = model->request.compensated,
-		.many = model->request.batch, .apart = regions && regions->parts
+		.many = model->request.many.batch, .apart = regions && regions->parts
 	};
 }
 

@@ -445,7 +445,7 @@ struct step *step_build(const struct model *model)
 	struct model *plain = NEW(struct model);
 	*plain = *model->written;
 	plain->request.form = FORM_DIRECT;
-	plain->request.compensated = plain->request.selftest = plain->request.batch = false;
+	plain->request.compensated = plain->request.selftest = plain->request.many.batch = false;
 	plain->request.refresh = plain->request.rows = 1;
 	step->shown = step_build(plain);
 	return step->shown ? step : NULL;

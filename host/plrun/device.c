@@ -73,13 +73,25 @@ static void device_open(void)
 		device.error = format("OpenCL cannot use its device: error %d", (int)failed);
 }
 
+/* C as of NAME_step has pointers to constants and to its own memory: of a processor they are alike. */
+static const char *words_for(cl_device_id id)
+{
+	char version[100] = "";
+	cl_device_type type = 0;
+	clGetDeviceInfo(id, CL_DEVICE_VERSION, sizeof version - 1, version, NULL);
+	clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof type, &type, NULL);
+	const char *standard = strncmp(version, "OpenCL 3", 8) == 0 ? "-cl-std=CL3.0"
+			       : strncmp(version, "OpenCL 2", 8) == 0 ? "-cl-std=CL2.0" : "";
+	return format("%s%s", standard, type & CL_DEVICE_TYPE_CPU ? "" : " -DPL_POINTERS_APART");
+}
+
 static char *build(struct kernel *k, const char *text, const char *name)
 {
 	cl_int failed;
 	char said[400] = "";
 	k->program = clCreateProgramWithSource(device.context, 1, &text, NULL, &failed);
 	if (failed == CL_SUCCESS)
-		failed = clBuildProgram(k->program, 1, &device.id, "", NULL, NULL);
+		failed = clBuildProgram(k->program, 1, &device.id, words_for(device.id), NULL, NULL);
 	if (failed == CL_SUCCESS)
 		k->function = clCreateKernel(k->program, format("%s_kernel", name), &failed);
 	if (failed == CL_SUCCESS)

@@ -109,10 +109,16 @@ for options in '--jobs 1' '--show thrust,x'; do
 		result $? 'on a device: all runs are'
 	fi
 done
-run forced.spec 15 --input u.csv --sweep k=80:90:3 --device >device.csv
+run forced.spec 15 --input u.csv --sweep k=80:90:3 --device --real float >device.csv
 cp said log
-grep -q '^note: --device: 3 of 3 runs were on the host, the first of them run 1: .*peaks are looked for' said
+grep -q '^note: --device: 3 of 3 runs were on the host, the first of them run 1: .*squares of a model in float' said
 result $? 'a model that no device takes is named'
+run forced.spec 15 --input u.csv --sweep k=80:90:3 --peak >host.csv
+run forced.spec 15 --input u.csv --jobs 1 --sweep k=80:90:3 --peak --device >device.csv
+same host.csv device.csv 'on a device, whole steps'
+cp said log
+! grep -q -- --device said || grep -q 'without OpenCL\|OpenCL has no device' said
+result $? 'on a device, whole steps: all runs are'
 for size in 1 1e160 1e-160; do
 	printf 'model large\nparam k = 4\ntunable k\ncoord x\ninit x = %s\n%s\nstep 0.1\n' $size "x'' + k*x = 0" \
 		>large.spec

@@ -25,7 +25,7 @@ static void emit_rows(const struct emitter *e, const char *name, const char *wha
 /* Instances of a batch have that of what they share in one number. */
 static bool has_reach(const struct emitter *e)
 {
-	return e->model->request.batch && !e->step->no.lanes && e->step->layout.size > e->system->states;
+	return e->model->request.many.batch && !e->step->no.lanes && e->step->layout.size > e->system->states;
 }
 
 void emit_nominal_peaks(const struct emitter *e)

@@ -5,6 +5,7 @@
 #include "emit/regions/regions.h"
 #include "emit/series/series.h"
 #include "model/contacts/contacts.h"
+#include "model/tunable/tuning.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 #include "step/series/expansion.h"
@@ -49,8 +50,10 @@ static int rows_of(const struct emitter *e)
 }
 
 /* Behind the states of a model of regions: the region, and contact and status as bytes */
-static const char *row_count(const struct emitter *e)
+const char *row_count(const struct emitter *e)
 {
+	if (e->step->no.lanes)
+		return spell(e, "(int)((sizeof(struct $n) + sizeof(double) - 1) / sizeof(double))");
 	if (has_series(e))
 		return format("%d", batch_stepped_rows(e) + 1);
 	if (has_regions(e))
@@ -76,7 +79,7 @@ static const char *row_list(const struct emitter *e)
 }
 
 /* Of a model with delayed inputs those that are given */
-static int inputs_of(const struct emitter *e)
+int inputs_of(const struct emitter *e)
 {
 	return e->model->delays ? e->model->delays->inputs : given_inputs(e);
 }
@@ -90,9 +93,7 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 	       " * of instance j stands at [i * count + j]. Set count and the arrays, then call $n_batch_init.%s */\n",
 	    inputs_of(e) ? " and under the same inputs" : "",
 	    alone ? format("\n * Each takes its steps by itself: %s.", alone) : "");
-	say(e, "enum { $N_BATCH_ROWS = %s%s };\n",
-	    alone ? spell(e, "(int)((sizeof(struct $n) + sizeof(double) - 1) / sizeof(double))")
-		  : row_count(e),
+	say(e, "enum { $N_BATCH_ROWS = %s%s };\n", row_count(e),
 	    b->factors ? format(", %s_BATCH_FACTORS = %d", e->upper, b->factors) : "");
 	say(e, "typedef struct $n_instances {\n"
 	       "    size_t count;\n"
@@ -111,6 +112,31 @@ static void declare_instances(const struct emitter *e, const struct batch *b)
 			   e->phases || e->envelopes ? ", phases of loads" : ""));
 }
 
+/* Bytes at the head of an instance's struct that hold all that instances share, for work items that take whole steps */
+const char *shared_head_text(const struct emitter *e)
+{
+	if (e->step->no.lanes)
+		return "0";
+	return spell(e, has_regions(e) ? "offsetof(struct $n, crossing)" : "sizeof(struct $n)");
+}
+
+/* Numbers of a row of NAME_batch_share */
+const char *shared_row_text(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	if (!takes_whole_steps(b))
+		return integer_text(b->shared);
+	if (e->step->no.lanes)
+		return integer_text(inputs_of(e));
+	return format("(int)(%s / sizeof(double)) + %d", shared_head_text(e), inputs_of(e));
+}
+
+/* Are there tunable params? */
+static bool drives_many(const struct batch *b)
+{
+	return b->factors > 0 || (b->e->step->no.lanes && tunables_of(b->e->model));
+}
+
 void emit_batch_declarations(const struct emitter *e)
 {
 	const struct batch b = e->step->no.lanes ? (struct batch){ .e = e } : plan_batch(e);
@@ -127,16 +153,15 @@ void emit_batch_declarations(const struct emitter *e)
 	if (e->step->no.lanes || leaves_lanes(e))
 		say(e, "void   $n_batch_take(const $n_instances *b, size_t j, $n *s);  /* instance j to s */\n"
 		       "void   $n_batch_give($n_instances *b, size_t j, const $n *s);  /* it goes on as s */\n");
-	if (!e->step->no.lanes && !has_regions(e) && !has_peaks(e))
-		say(e, "/* For $n_kernel on a device (plgen --target): now[n + 1][$N_BATCH_SHARED] receives what all\n"
-		       " * share in n steps%s; time goes on. */\n"
-		       "enum { $N_BATCH_SHARED = %d };\n"
-		       "void   $n_batch_share($n_instances *b, size_t n, %sdouble *now);\n",
-		    inputs ? ", n rows of u" : "", b.shared, inputs ? "const double *u, " : "");
+	say(e, "/* For $n_kernel on a device (plgen --target): now[n + 1][$N_BATCH_SHARED] receives what all\n"
+	       " * share in n steps%s; time goes on. */\n"
+	       "enum { $N_BATCH_SHARED = %s };\n"
+	       "void   $n_batch_share($n_instances *b, size_t n, %sdouble *now);\n",
+	    inputs ? ", n rows of u" : "", shared_row_text(&b), inputs ? "const double *u, " : "");
 	say(e, "/* n steps%s; out: [n][$N_OUTPUTS][count], or NULL */\n"
 	       "void   $n_batch($n_instances *b, size_t n, %sdouble *out);\n",
 	    inputs ? ", n rows of u for all" : "", inputs ? "const double *u, " : "");
-	say(e, b.factors ? "extern const pl_many $n_many;  /* for programs that drive any model */\n\n" : "\n");
+	say(e, drives_many(&b) ? "extern const pl_many $n_many;  /* for programs that drive any model */\n\n" : "\n");
 }
 
 /* ---- what instances share of a step ---- */
@@ -183,12 +208,12 @@ static void emit_shared(const struct batch *b)
 
 /* ---- what batch.h asks ---- */
 
-static void emit_factor_places(const struct batch *b)
+void emit_factor_places(const struct batch *b)
 {
 	const struct emitter *e = b->e;
 	if (!b->factors)
 		return;
-	say(e, "\nstatic const size_t $n_factor_at[$N_BATCH_FACTORS] = {\n");
+	say(e, "\nstatic const size_t $n_factor_at[%d] = {\n", b->factors);
 	for (int k = 0; k < b->factors; k++)
 		say(e, "    offsetof(struct $n, %s),\n", strchr(b->factor_text[k], '>') + 1);
 	say(e, "};\n");
@@ -248,7 +273,7 @@ static void emit_include(const struct batch *b)
 		   { "OVER", steps_of_series(e) },
 		   { "TUNED", e->step->is.tuned },
 		   { "OUT_ALONE", b->out_alone },
-		   { "SHARES", !has_regions(e) && !has_peaks(e) },
+		   { "SHARES", takes_whole_steps(b) ? 2 : 1 },
 		   { "LANES_PAY", !has_regions(e) ? 0 : has_events(e->model->switching) ? 3 : 2 },
 		   { "STEPPED", batch_stepped_rows(e) }, { "GROUPS", batch_groups(e) },
 		   { "SHARED", b->shared }, { "FACTORS", b->factors }, { "LANES", b->lanes },
@@ -259,6 +284,8 @@ static void emit_include(const struct batch *b)
 		   { "COMPENSATED", e->step->program->compensated });
 	say(e, "#define PL_INSTANCES $n_instances\n");
 	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
+	say_macro(e, "NOW", spell(e, "$N_BATCH_SHARED"));
+	say_macro(e, "HEAD", shared_head_text(e));
 	if (has_peaks(e))
 		say_macro(e, "NOMINAL", e->step->is.tuned ? spell(e, "$n_nominal.bend") : spell(e, "$n_peak_bend"));
 	say(e, "#include \"batch.h\"\n");
@@ -267,7 +294,8 @@ static void emit_include(const struct batch *b)
 static void emit_each(const struct emitter *e)
 {
 	emit_sizes(e, "each.h", { "STATES", e->system->states }, { "INPUTS", inputs_of(e) },
-		   { "OUTPUTS", e->model->outputs });
+		   { "OUTPUTS", e->model->outputs }, { "RAMPS", e->ramps }, { "TUNED", e->step->is.tuned },
+		   { "PARAMS", tunables_of(e->model) ? tunables_of(e->model)->given : 0 });
 	say_macro(e, "ROWS", spell(e, "$N_BATCH_ROWS"));
 	say_macro(e, "INSTANCES", spell(e, "$n_instances"));
 	say_include(e, "each.h");

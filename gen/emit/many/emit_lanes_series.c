@@ -66,6 +66,13 @@ static void emit_functions(const struct emitter *e, const struct tape *t)
 		emit_function(e, "atan2", true);
 }
 
+bool takes_whole_steps(const struct batch *b)
+{
+	const struct emitter *e = b->e;
+	return e->step->no.lanes || has_regions(e) || has_peaks(e) ||
+	       (has_series(e) && (b->out_alone || calls_functions(b->step) || calls_functions(b->out)));
+}
+
 int steps_of_series(const struct emitter *e)
 {
 	return !has_series(e) ? 0 : spans_steps(e) ? e->model->truncation.over : 1;

@@ -34,6 +34,12 @@ void emit_kernel_of_series(struct batch *b);
 int  steps_of_series(const struct emitter *e);  /* that one is over; 0: there is none */
 bool calls_functions(const struct tape *t);
 struct batch plan_batch(const struct emitter *e);
+bool takes_whole_steps(const struct batch *b);  /* a work item of a device, as NAME_step; else sums of lanes */
+const char *row_count(const struct emitter *e);                   /* numbers of an instance */
+int  inputs_of(const struct emitter *e);
+const char *shared_head_text(const struct emitter *e);
+const char *shared_row_text(const struct batch *b);
+void emit_factor_places(const struct batch *b);
 int batch_stepped_rows(const struct emitter *e);                  /* of an instance's memory: those a step changes */
 int batch_groups(const struct emitter *e);                        /* of lanes that step in turns */
 void emit_lanes_step(struct batch *b);

@@ -87,7 +87,7 @@ static void build_mode_error(void *context)
 	b->error->written = b->error;
 	b->error->request.form = FORM_DIRECT;
 	b->error->request.refresh = b->error->request.rows = 1;
-	b->error->request.batch = b->error->request.selftest = false;
+	b->error->request.many.batch = b->error->request.selftest = false;
 	b->step = step_build(b->error);
 	if (!b->step)
 		abandon();

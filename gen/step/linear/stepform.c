@@ -158,7 +158,7 @@ void check_step_form(struct step *step)
 		leave_form(step, "it is of a linear step");
 	if (step->is.two_words && (requested == FORM_DIRECT || requested == FORM_MODAL))
 		leave_form(step, "--accuracy compensated takes the form delta or kick-drift-kick");
-	if (requested == FORM_MODAL && step->model->request.batch)
+	if (requested == FORM_MODAL && step->model->request.many.batch)
 		leave_form(step, "it keeps modes in the place of states, which --batch steps");
 }
 
