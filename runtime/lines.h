@@ -5,45 +5,54 @@
  *     PL_INNERS, PL_SQUARES      of two sequences, of one with itself
  *     PL_DIVIDED, PL_POWERS      of what is made by division, of powers
  *     PL_SOLVES                  linear equations
+ *     PL_ACROSS                  above 0: so many rows side by side, the table is [k][row]; behind lanes.h
+ *     PL_RUNS, PL(alike)[]       then sums of products of like elements: rows a, b, offset beside k, how many
  *
  * Each sum has the order of the same series in straight code, from what stands in the middle to both ends, in two
  * chains where it is long. */
 #include "numbers.h"
 
-#if PL_INNERS
+#if PL_ACROSS > 0
+#define PL_NEXT PL_ACROSS
+#else
+#define PL_NEXT 1
+#endif
+#define PL_PAIR(a, i, b, j) ((a)[(i) * PL_NEXT] * (b)[(j) * PL_NEXT])
+
+#if PL_INNERS || PL_RUNS > 0
 /* a[1] b[k-1] + ... + a[k-1] b[1] */
 static real PL(inner)(const real *a, const real *b, int k)
 {
     real sum[2] = {0, 0};
     int i = k / 2, j = k - i;
     if (i == j && i > 0) { /* in the middle, the first of the first chain */
-        sum[0] = a[i] * b[i];
+        sum[0] = PL_PAIR(a, i, b, i);
         i--;
         j++;
         if (k <= 4) { /* at most four terms: one chain */
-            return i > 0 ? sum[0] + a[i] * b[j] + a[j] * b[i] : sum[0];
+            return i > 0 ? sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i) : sum[0];
         }
         for (; i > 0; i--, j++) {
-            sum[1] += a[i] * b[j];
-            sum[0] += a[j] * b[i];
+            sum[1] += PL_PAIR(a, i, b, j);
+            sum[0] += PL_PAIR(a, j, b, i);
         }
         return sum[0] + sum[1];
     }
     if (k <= 5) {
         for (; i > 0; i--, j++) {
-            sum[0] = sum[0] + a[i] * b[j] + a[j] * b[i];
+            sum[0] = sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i);
         }
         return sum[0];
     }
     for (; i > 0; i--, j++) {
-        sum[0] += a[i] * b[j];
-        sum[1] += a[j] * b[i];
+        sum[0] += PL_PAIR(a, i, b, j);
+        sum[1] += PL_PAIR(a, j, b, i);
     }
     return sum[0] + sum[1];
 }
 #endif
 
-#if PL_SQUARES
+#if PL_SQUARES || PL_RUNS > 0
 /* The same of a and a: each pair once, twice over */
 static real PL(inner_square)(const real *a, int k)
 {
@@ -51,15 +60,15 @@ static real PL(inner_square)(const real *a, int k)
     int i = (k - 1) / 2, j = k - i;
     if (i <= 4) {
         for (; i > 0; i--, j++) {
-            sum[0] += a[i] * a[j];
+            sum[0] += PL_PAIR(a, i, a, j);
         }
     }
     for (; i > 0; i -= 2, j += 2) {
-        sum[0] += a[i] * a[j];
-        sum[1] += i > 1 ? a[i - 1] * a[j + 1] : 0;
+        sum[0] += PL_PAIR(a, i, a, j);
+        sum[1] += i > 1 ? PL_PAIR(a, i - 1, a, j + 1) : 0;
     }
     sum[0] = 2 * (sum[0] + sum[1]);
-    return k % 2 ? sum[0] : a[k / 2] * a[k / 2] + sum[0];
+    return k % 2 ? sum[0] : PL_PAIR(a, k / 2, a, k / 2) + sum[0];
 }
 #endif
 
@@ -70,10 +79,10 @@ static real PL(inner_of_quotient)(const real *c, const real *b, int k)
     real sum[2] = {0, 0};
     int j;
     for (j = 1; j + 1 < k; j += 2) {
-        sum[0] += c[j] * b[k - j];
-        sum[1] += c[j + 1] * b[k - j - 1];
+        sum[0] += PL_PAIR(c, j, b, k - j);
+        sum[1] += PL_PAIR(c, j + 1, b, k - j - 1);
     }
-    return sum[0] + sum[1] + (j < k ? c[j] * b[k - j] : 0);
+    return sum[0] + sum[1] + (j < k ? PL_PAIR(c, j, b, k - j) : 0);
 }
 #endif
 
@@ -84,10 +93,123 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
     real sum = 0;
     int j;
     for (j = 1; j < k; j++) {
-        sum += (e * (real)(k - j) - (real)j) / (real)k * (a[k - j] * c[j]);
+        sum += (e * (real)(k - j) - (real)j) / (real)k * PL_PAIR(a, k - j, c, j);
     }
     return sum;
 }
+#endif
+
+#if PL_ACROSS > 0
+/* ---- the same of like elements in lanes, `groups` of them: each sum in its order ---- */
+
+#define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
+#define PL_LANES_AT(a, i, g) pl_lanes_load((a) + (i) * PL_NEXT + (g) * PL_AT_ONCE, PL_AT_ONCE)
+#define PL_LANES_PAIR(a, i, b, j, g) (PL_LANES_AT(a, i, g) * PL_LANES_AT(b, j, g))
+
+PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, int k, real *to, const size_t groups)
+{
+    const real *const one = k > 5 && k % 2 == 0 ? b : a, *const other = one == a ? b : a; /* the first chain's */
+    pl_lanes sum[4], more[4];
+    int i = k / 2, j = k - i;
+    size_t g;
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        sum[g] = more[g] = pl_lanes_all(0);
+        if (i == j && i > 0) {
+            sum[g] = PL_LANES_PAIR(a, i, b, i, g);
+        }
+    }
+    i -= i == j;
+    for (j = k - i; i > 0 && k <= 5; i--, j++) {
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+            sum[g] = sum[g] + PL_LANES_PAIR(a, i, b, j, g) + PL_LANES_PAIR(a, j, b, i, g);
+        }
+    }
+    for (; i > 0; i--, j++) {
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+            sum[g] = sum[g] + PL_LANES_PAIR(one, i, other, j, g);
+            more[g] = more[g] + PL_LANES_PAIR(one, j, other, i, g);
+        }
+    }
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        pl_lanes_store(to + g * PL_AT_ONCE, k > 5 ? sum[g] + more[g] : sum[g], PL_AT_ONCE);
+    }
+}
+
+PL_LANES_INLINE void PL(inner_square_lanes)(const real *a, int k, real *to, const size_t groups)
+{
+    pl_lanes sum[4], more[4];
+    int i = (k - 1) / 2, j = k - i;
+    size_t g;
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        sum[g] = more[g] = pl_lanes_all(0);
+    }
+    if (i > 4) {
+        for (; i > 1; i -= 2, j += 2) {
+            PL_LANES_UNROLL
+            for (g = 0; g < groups; g++) {
+                sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
+                more[g] = more[g] + PL_LANES_PAIR(a, i - 1, a, j + 1, g);
+            }
+        }
+    }
+    for (; i > 0; i--, j++) {
+        PL_LANES_UNROLL
+        for (g = 0; g < groups; g++) {
+            sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
+        }
+    }
+    PL_LANES_UNROLL
+    for (g = 0; g < groups; g++) {
+        sum[g] = 2 * (sum[g] + more[g]);
+        if (k % 2 == 0) {
+            sum[g] = PL_LANES_PAIR(a, k / 2, a, k / 2, g) + sum[g];
+        }
+        pl_lanes_store(to + g * PL_AT_ONCE, sum[g], PL_AT_ONCE);
+    }
+}
+
+/* Of one run; what does not fill lanes is made again with some before, or by itself */
+static void PL(inners_of_run)(const real *a, const real *b, int k, size_t count, real *to)
+{
+    size_t done = 0, at;
+    for (; done + PL_AT_ONCE < count && count >= 4 * PL_AT_ONCE; done += 4 * PL_AT_ONCE) {
+        at = count - done < 4 * PL_AT_ONCE ? count - 4 * PL_AT_ONCE : done;
+        if (a == b) {
+            PL(inner_square_lanes)(a + at, k, to + at, 4);
+        } else {
+            PL(inner_lanes)(a + at, b + at, k, to + at, 4);
+        }
+    }
+    for (; done < count && count >= PL_AT_ONCE; done += PL_AT_ONCE) {
+        at = count - done < PL_AT_ONCE ? count - PL_AT_ONCE : done;
+        if (a == b) {
+            PL(inner_square_lanes)(a + at, k, to + at, 1);
+        } else {
+            PL(inner_lanes)(a + at, b + at, k, to + at, 1);
+        }
+    }
+    for (; done < count; done++) {
+        to[done] = a == b ? PL(inner_square)(a + done, k) : PL(inner)(a + done, b + done, k);
+    }
+}
+
+static void PL(inners_of_turn)(const real *table, int k, real *to)
+{
+    int i;
+    for (i = 0; i < 4 * PL_RUNS; i += 4) {
+        const size_t count = (size_t)PL(alike)[i + 3];
+        PL(inners_of_run)(table + PL(alike)[i], table + PL(alike)[i + 1], k + PL(alike)[i + 2], count, to);
+        to += count;
+    }
+}
+#undef PL_AT_ONCE
+#undef PL_LANES_AT
+#undef PL_LANES_PAIR
 #endif
 
 #if PL_SOLVES
@@ -177,4 +299,6 @@ static void PL(solve_by_lists)(int n, int count, const short *first, const short
 }
 #endif
 
+#undef PL_NEXT
+#undef PL_PAIR
 #include "undef.h"

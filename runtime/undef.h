@@ -354,9 +354,11 @@
 #undef PL_WORTH
 #undef PL_WRAPPED
 #undef PL_WRITTEN_OUT
+#undef PL_ACROSS
 #undef PL_DIVIDED
 #undef PL_INNERS
 #undef PL_POWERS
+#undef PL_RUNS
 #undef PL_SOLVES
 #undef PL_SQUARES
 #undef real

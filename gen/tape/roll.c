@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FEW = 4, PLACES = 4, WIDTH = 100 };
+enum { FEW = 4, PLACES = 4, WIDTH = 100, VECTORS = 8 };
 
 /* An operand or a value where a statement reads it, or what it sets: a pattern with # for each number in brackets; of a
  * constant "#", and its text */
@@ -25,6 +25,7 @@ struct roll {
 	int *run, *depth;           /* per node: the run that makes it; how many values wait for one another in it */
 	bool *value;                /* per node: it has a place of its own */
 	bool *inner;                /* per node: the first terms of a longer sum */
+	bool *fixed, *ahead;        /* per node: no turn changes it; so it is made before the first, for one that is */
 	int *rolls;                 /* per out: the number of the long run that it begins; 0: none */
 	int made;                   /* places so far */
 	struct statement *now;      /* is being made */
@@ -46,7 +47,8 @@ static bool is_value(struct printing *p, tape_ref ref)
 	const struct tape_node *n = tape_node(p->t, ref);
 	if (tape_is_operand(p->t, ref))
 		return is_kept_operand(p, ref);
-	return !n->choice && (p->roll->inner[ref] || (p->uses[ref] > 1 && (!tape_is_cheap(p->t, ref) || n->name)));
+	return !n->choice && (p->roll->inner[ref] || p->roll->ahead[ref] ||
+			       (p->uses[ref] > 1 && (!tape_is_cheap(p->t, ref) || n->name)));
 }
 
 static void find_inner(const struct printing *p)
@@ -89,6 +91,34 @@ static int claim(struct printing *p, int first, int end, int run)
 	return values;
 }
 
+/* What is the same in each turn of a loop is made before it. */
+static void find_fixed(struct printing *p)
+{
+	struct roll *r = p->roll;
+	tape_ref operand[3];
+	for (int i = 0; i < tape_length(p->t) && p->to->across; i++) {
+		const struct tape_node *n = tape_node(p->t, i);
+		const int operands = operands_of(n, operand);
+		r->fixed[i] = !n->choice && !(n->op == TAPE_TABLE && n->part < 0);
+		for (int k = 0; k < operands; k++)
+			r->fixed[i] = r->fixed[i] && r->fixed[operand[k]];
+		for (int k = 0; k < operands && !r->fixed[i] && p->uses[i] > 0; k++)
+			r->ahead[operand[k]] = r->fixed[operand[k]] && !tape_is_operand(p->t, operand[k]);
+	}
+}
+
+static void claim_ahead(const struct printing *p)
+{
+	struct roll *r = p->roll;
+	tape_ref operand[3];
+	for (int i = tape_length(p->t) - 1; i >= 0; i--)
+		if (r->ahead[i] || (r->run[i] == 1 && r->fixed[i])) {
+			r->run[i] = 1;
+			for (int k = operands_of(tape_node(p->t, i), operand) - 1; k >= 0; k--)
+				r->run[operand[k]] = r->run[operand[k]] ? r->run[operand[k]] : 1;
+		}
+}
+
 static int end_of_run(const struct tape *t, int out)
 {
 	while (out < tape_outs(t) && tape_out(t, out)->target)
@@ -116,9 +146,12 @@ struct roll *roll_new(struct printing *p)
 	struct roll *r = NEW(struct roll);
 	*r = (struct roll){ .run = ARRAY(int, nodes + 1), .depth = ARRAY(int, nodes + 1),
 			    .value = ARRAY(bool, nodes + 1), .inner = ARRAY(bool, nodes + 1),
+			    .fixed = ARRAY(bool, nodes + 1), .ahead = ARRAY(bool, nodes + 1),
 			    .rolls = ARRAY(int, tape_outs(p->t) + 1) };
 	p->roll = r;
 	find_inner(p);
+	find_fixed(p);
+	claim_ahead(p);
 	for (int i = 0, end; i < tape_outs(p->t); i = end + 1) {
 		end = end_of_run(p->t, i);
 		const int more = claim(p, i, end, ++run);
@@ -294,6 +327,8 @@ static void print_folded(const struct printing *p, int indent, const char *text,
 	fprintf(p->out, ";%s\n", note ? format("  /* %s */", note) : "");
 }
 
+/* Turns without tables read side by side: as many of them as fill vectors are a loop of their own, which compilers make
+ * one of vectors also at -O2. */
 static void print_loop(const struct printing *p, const struct loop *l)
 {
 	const struct statement *first = l->turn[0];
@@ -302,9 +337,14 @@ static void print_loop(const struct printing *p, const struct loop *l)
 	fprintf(p->out, "%*s{\n", p->indent, "");
 	for (int k = 0; k < first->leaves; k++)
 		text[k] = leaf_text(p, l, k, &tables);
-	fprintf(p->out, "%*sfor (turn_by_0 = 0; turn_by_0 < %d; turn_by_0++) {\n", p->indent + 4, "", l->turns);
-	print_folded(p, p->indent + 8, filled(first->shape, text), NULL);
-	fprintf(p->out, "%*s}\n%*s}\n", p->indent + 4, "", p->indent, "");
+	const int vectors = tables || !p->to->across ? 0 : l->turns / VECTORS * VECTORS;
+	for (int i = vectors > 0 ? 0 : 1; i < 2 && (i == 0 || vectors < l->turns); i++) {
+		fprintf(p->out, "%*sfor (turn_by_0 = %d; turn_by_0 < %d; turn_by_0++) {\n", p->indent + 4, "",
+			i > 0 ? vectors : 0, i > 0 ? l->turns : vectors);
+		print_folded(p, p->indent + 8, filled(first->shape, text), NULL);
+		fprintf(p->out, "%*s}\n", p->indent + 4, "");
+	}
+	fprintf(p->out, "%*s}\n", p->indent, "");
 }
 
 static void print_alone(const struct printing *p, const struct statement *s)
@@ -367,15 +407,48 @@ static void place_values(struct printing *p, const struct group *g)
 	}
 }
 
+/* As many turns from this one on as differ by places that rise evenly */
+static int even_turns(const struct group *g, int from)
+{
+	const struct statement *const *s = g->member + from;
+	bool even = true;
+	int turns = 1;
+	for (; from + turns < g->count && even; turns += even)
+		for (int k = 0; k < s[0]->leaves && even; k++) {
+			const struct leaf *a = &s[0]->leaf[k], *b = &s[1]->leaf[k], *now = &s[turns]->leaf[k];
+			even = !a->number || strcmp(a->number, now->number) == 0;
+			for (int i = 0; i < PLACES; i++) {
+				const int stride = b->place[i] - a->place[i];
+				even = even && stride >= 0 && now->place[i] == a->place[i] + turns * stride;
+			}
+		}
+	return turns;
+}
+
+/* Those that are even are loops of their own; said is what is left. */
+static struct group print_even(const struct printing *p, const struct group *g)
+{
+	struct group left = { 0, NULL };
+	for (int i = 0, turns; i < g->count; i += turns) {
+		turns = p->to->across ? even_turns(g, i) : 1;
+		if (turns >= VECTORS)
+			print_loop(p, &(struct loop){ g->member + i, turns });
+		else
+			*MORE(left.member, left.count) = g->member[i];
+		turns = turns >= VECTORS ? turns : 1;
+	}
+	return left;
+}
+
 static void print_groups(struct printing *p, const struct groups *all)
 {
 	for (int i = 0; i < all->count; i++) {
-		const struct group *g = &all->group[i];
-		place_values(p, g);
-		if (g->count >= FEW)
-			print_loop(p, &(struct loop){ g->member, g->count });
-		for (int k = 0; k < g->count && g->count < FEW; k++)
-			print_alone(p, g->member[k]);
+		place_values(p, &all->group[i]);
+		const struct group g = print_even(p, &all->group[i]);
+		if (g.count >= FEW)
+			print_loop(p, &(struct loop){ g.member, g.count });
+		for (int k = 0; k < g.count && g.count < FEW; k++)
+			print_alone(p, g.member[k]);
 	}
 }
 

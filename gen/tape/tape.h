@@ -173,7 +173,8 @@ struct tape_lanes {
 	const char *function;       /* before the name of a function of lanes that is one of <math.h> of each */
 	bool (*varies)(const void *context, const struct tape_node *node); /* an operand */
 };
-enum { LONG_RUN = 1500 };       /* statements: gcc takes seconds for a few thousand straight lines */
+/* Statements: gcc takes seconds for a few thousand straight lines; of like elements side by side */
+enum { LONG_RUN = 1500, RUN_ALIKE = 16 };
 struct tape_target {
 	const char *real;           /* the type of a number */
 	const char *(*number)(const void *context, mpq_srcptr value); /* NULL: rounded, as short as reads back */
@@ -185,6 +186,7 @@ struct tape_target {
 	bool locals_first;          /* before the first target is set, which what they read may be part of */
 	/* So many statements with no line between them are loops over tables, 0: never; none reads what others set. */
 	int rolls;
+	bool across;                /* a loop over k of like elements: only TAPE_TABLE of `part` below 0 changes in it */
 	const struct tape_lanes *lanes; /* NULL: there are none */
 	bool rows_alike;            /* negative factors are added: rows that differ in numbers alone go side by side */
 };

@@ -37,25 +37,32 @@ const char *coefficient(const struct emitter *e, int sequence, int k)
 
 /* ---- operands ---- */
 
+static const char *row_of_line(const struct lines *l, int sequence)
+{
+	return format(l->across ? "&table_by_0[0][%d]" : "table_by_0[%d]", l->row[sequence]);
+}
+
 /* What the loop over k reads of a long series */
 static const char *stage_operand(const struct emitter *e, const struct stage_value *v)
 {
 	static const char *const function[] = { [STAGE_INNER] = "inner", [STAGE_QUOTIENT] = "inner_of_quotient",
 						[STAGE_POWER] = "inner_of_power" };
 	const struct lines *l = own_expansion(e)->lines;
+	const int made = l->place[v - l->value];
 	const char *k = stage_index(v->offset);
+	if (made != NONE)
+		return format("inner_by_0[%d]", made);
 	switch (v->kind) {
-	case STAGE_COEFFICIENT: return format("table_by_0[%d][%s]", l->row[v->a], k);
+	case STAGE_COEFFICIENT: return line_place(l, v->a, k);
 	case STAGE_FACTOR:      return spell(e, "$n_series_factor[%d][%s]", v->a, k);
 	case STAGE_FORCE:       return format("force[%s][%d]", k, v->a);
 	case STAGE_NUMBER:      return format("(double)(%s)", k);
 	case STAGE_SOLVED:      return format("solved_by_%d[%d]", v->a, v->b);
-	case STAGE_SQUARE:      return spell(e, "$n_inner_square(table_by_0[%d], %s)", l->row[v->a], k);
+	case STAGE_SQUARE:      return spell(e, "$n_inner_square(%s, %s)", row_of_line(l, v->a), k);
 	default:                break;
 	}
 	const char *more = v->kind == STAGE_POWER ? format(", %s", shortest(v->exponent)) : "";
-	return spell(e, "$n_%s(table_by_0[%d], table_by_0[%d], %s%s)", function[v->kind], l->row[v->a],
-		     l->row[v->b], k, more);
+	return spell(e, "$n_%s(%s, %s, %s%s)", function[v->kind], row_of_line(l, v->a), row_of_line(l, v->b), k, more);
 }
 
 static const char *operand(const void *context, const struct tape_node *n)
@@ -85,9 +92,11 @@ struct recurrences *series_new(const struct emitter *e)
 static void print_series(const struct emitter *e, const struct recurrences *r, bool locals_first)
 {
 	const struct tape *t = tape_of_recurrences(r);
+	const struct lines *l = own_expansion(e)->lines;
+	const bool across = !locals_first && l && l->across;
 	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
-					.context = e, .indent = 4, .locals_first = locals_first,
-					.rolls = locals_first || e->device ? 0 : LONG_RUN };
+					.context = e, .indent = 4, .locals_first = locals_first, .across = across,
+					.rolls = locals_first || e->device ? 0 : across ? RUN_ALIKE : LONG_RUN };
 	tape_print(t, &to, e->to);
 }
 
@@ -110,8 +119,9 @@ static const char *solver(const void *context, const struct linear_equations *q,
 
 struct recurrences *series_in_loop(const struct emitter *e)
 {
-	return recurrences_new(e->step, own_expansion(e), (struct series_names){ base_name, e, false, true,
-								    solver });
+	const struct series_names names = { .name = base_name, .context = e, .looped = true, .solver = solver,
+					    .turn = spell(e, "$n_inners_of_turn(table_by_0[0], k_by_0, inner_by_0);") };
+	return recurrences_new(e->step, own_expansion(e), names);
 }
 
 /* Each system once: its first component has the place of the first */
@@ -138,12 +148,28 @@ static void emit_factor_lists(const struct emitter *e, const struct linear_equat
 	emit_integers(e, "short", format("before_%d", q->number), first[q->n] ? first[q->n] : 1, before);
 }
 
+/* Like elements side by side: lanes, and which sums of products these begin a turn with */
+static void emit_runs(const struct emitter *e, const struct lines *l)
+{
+	SCRATCH int *run = ARRAY(int, 4 * l->runs + 4);
+	for (int i = 0; i < l->runs; i++) {
+		const int *const from = (const int[]){ l->run[i].a, l->run[i].b, l->run[i].offset, l->run[i].count };
+		for (int k = 0; k < 4; k++)
+			run[4 * i + k] = from[k];
+	}
+	say(e, "\n/* Sums of products of like elements: the first two rows, beside k, how many */\n");
+	emit_integers(e, "short", "alike", 4 * l->runs, run);
+	open_algorithm(e, "lanes.h", &(struct size){ NULL, 0 });
+	say(e, "#include \"lanes.h\"\n");
+}
+
 void emit_series_loop_tables(const struct emitter *e)
 {
 	const struct expansion *x = own_expansion(e);
-	const struct lines *l = x->lines;
+	struct lines *l = x->lines;
 	const int states = e->system->states;
 	bool solves = false;
+	find_runs(l);
 	double *factor = ARRAY(double, (size_t)(l->factors * l->width) + 1);
 	int *row = ARRAY(int, (size_t)(states + x->columns));
 	for (int i = 0; i < l->factors * l->width; i++)
@@ -165,17 +191,21 @@ void emit_series_loop_tables(const struct emitter *e)
 			emit_factor_lists(e, q);
 		solves = solves || (q && !(e->step->collocation && e->step->collocation->motion->listed));
 	}
+	if (l->across)
+		emit_runs(e, l);
 	emit_sizes(e, "lines.h", { "INNERS", calls_stage(x, STAGE_INNER) }, { "SQUARES", calls_stage(x, STAGE_SQUARE) },
 		   { "DIVIDED", calls_stage(x, STAGE_QUOTIENT) }, { "POWERS", calls_stage(x, STAGE_POWER) },
-		   { "SOLVES", solves });
+		   { "SOLVES", solves }, { "ACROSS", l->across ? l->rows : 0 }, { "RUNS", l->runs });
 	say_include(e, "lines.h");
 }
 
 void emit_series_loop(const struct emitter *e, const struct recurrences *r)
 {
 	const struct expansion *x = own_expansion(e);
-	say(e, "    double table_by_0[%d][%d];\n"
-	       "    int k_by_0, i_by_0;\n", x->lines->rows, x->lines->width);
+	const struct lines *l = x->lines;
+	say(e, "    double table_by_0[%d][%d]%s;\n"
+	       "    int k_by_0, i_by_0;\n", l->across ? l->width : l->rows, l->across ? l->rows : l->width,
+	    l->across ? format(", inner_by_0[%d]", l->inners + 1) : "");
 	for (int i = 0; i < x->count; i++) {
 		const struct linear_equations *q = listed_at(x, i);
 		if (q)
@@ -183,12 +213,15 @@ void emit_series_loop(const struct emitter *e, const struct recurrences *r)
 			    q->number, q->n);
 	}
 	print_series(e, r, false);
-	say(e, "    for (k_by_0 = 0; k_by_0 <= %d; k_by_0++) {\n"
-	       "        for (i_by_0 = 0; i_by_0 < %d; i_by_0++) {\n"
+	say(e, "    for (k_by_0 = 0; k_by_0 <= %d; k_by_0++) {\n", x->order);
+	if (l->across)          /* the first rows are the states */
+		say(e, "        memcpy(c[k_by_0], table_by_0[k_by_0], $N_STATES * sizeof c[0][0]);\n");
+	say(e, "        for (i_by_0 = %d; i_by_0 < %d; i_by_0++) {\n"
 	       "            c[k_by_0][i_by_0] = k_by_0 <= $n_kept_top[i_by_0]\n"
-	       "                                ? table_by_0[$n_kept_row[i_by_0]][k_by_0] : 0;\n"
+	       "                                ? table_by_0%s : 0;\n"
 	       "        }\n"
-	       "    }\n", x->order, e->system->states + x->columns);
+	       "    }\n", l->across ? e->system->states : 0, e->system->states + x->columns,
+	    spell(e, l->across ? "[k_by_0][$n_kept_row[i_by_0]]" : "[$n_kept_row[i_by_0]][k_by_0]"));
 }
 
 void emit_series_locals(const struct emitter *e)

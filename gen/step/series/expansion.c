@@ -135,11 +135,6 @@ static void lower_tops(struct expansion *x)
 		x->sequence[i].top = x->sequence[i].top < degree[i] ? x->sequence[i].top : degree[i];
 }
 
-static const char *place_of(const struct lines *l, int sequence, const char *k)
-{
-	return format("table_by_0[%d][%s]", l->row[sequence], k);
-}
-
 /* What precedes the loop, and the loop */
 void set_lines(struct recurrences *r, const struct expansion *x)
 {
@@ -147,11 +142,12 @@ void set_lines(struct recurrences *r, const struct expansion *x)
 	struct tape *t = tape_of_recurrences(r);
 	for (int i = 0; i < x->count; i++)
 		for (int k = 0; k < l->first + l->offset[i] && l->row[i] != NONE; k++)
-			recurrence_set(r, place_of(l, i, format("%d", k)), i, k);
+			recurrence_set(r, line_place(l, i, format("%d", k)), i, k);
 	tape_statement(t, format("for (k_by_0 = %d; k_by_0 <= %d; k_by_0++) {", l->first, l->last));
+	recurrences_begin_turn(r);
 	for (int i = 0; i < x->count; i++)
 		if (l->row[i] != NONE)
-			recurrence_set(r, place_of(l, i, stage_index(l->offset[i])), i, STAGE + l->offset[i]);
+			recurrence_set(r, line_place(l, i, stage_index(l->offset[i])), i, STAGE + l->offset[i]);
 	tape_statement(t, "}");
 }
 

@@ -50,6 +50,7 @@ struct series_names {               /* of a sequence's nodes, x of x_3; NULL: th
 	const void *context;
 	bool by_numbers;            /* the state chooses by its numbers, else by intervals */
 	bool looped;                /* as a loop over k where the expansion is long */
+	const char *turn;           /* C at the head of each turn of a loop with rows side by side; NULL: none */
 	/* C that factors the matrix of a system, or solves it; NULL: there is none */
 	const char *(*solver)(const void *context, const struct linear_equations *e, bool factors);
 };
@@ -76,6 +77,8 @@ enum stage_kind {
 	STAGE_SOLVED                /* component b of the solution of system a */
 };
 struct stage_value { enum stage_kind kind; int a, b, offset; double exponent; };
+/* Sums of products of rows a and b, a + 1 and b + 1, ..., as of stage value `value` */
+struct product_run { int a, b, offset, count, value; };
 enum { STAGED = -1 };               /* TAPE_TABLE of this `part` is stage value `index` */
 struct lines {
 	int *offset;                /* per sequence: the loop at k makes its coefficient k + offset */
@@ -87,11 +90,17 @@ struct lines {
 	struct stage_value *value;
 	int factors;
 	double **factor;            /* [table][k], width numbers each */
+	bool across;                /* the table is [k][row]: like elements side by side, */
+	int runs, inners;           /* of which a turn begins with these sums */
+	struct product_run *run;
+	int *place;                 /* per value: which of them it is; NONE: it is made where it is read */
 };
 /* All rows of the table, and the loop: in C table_by_0[row][k], k_by_0, and matrix_by_N[], solved_by_N[] of equations
  * that are solved by lists */
 void set_lines(struct recurrences *r, const struct expansion *x);
 const char *stage_index(int offset);        /* C: k + offset */
+const char *line_place(const struct lines *l, int sequence, const char *k);     /* C: the k-th of a row */
+void find_runs(struct lines *l);            /* once all values are known */
 bool is_listed(const struct linear_equations *e);
 bool is_symmetric_system(const struct linear_equations *e);
 int *system_columns(const struct linear_equations *e, int *first); /* as factor_columns */

@@ -21,6 +21,7 @@ int  breakpoint_rank(const struct expansion *x, int function, int breakpoint);  
 
 tape_ref recurrence(struct recurrences *r, int sequence, int k);     /* TAPE_NONE: 0, of k > 0 */
 int sequence_operands(const struct sequence *s, int **operand);
+void recurrences_begin_turn(struct recurrences *r);                  /* of the loop */
 
 /* ---- lines.c: a long series as a loop over k ---- */
 

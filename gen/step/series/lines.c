@@ -5,6 +5,7 @@
  * What precedes the first turn is made as in a short series. */
 #include "inner.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* ---- which coefficient of a sequence a turn makes ---- */
@@ -81,6 +82,119 @@ static void number_rows(const struct expansion *x, struct lines *l)
 		l->row[i] = l->row[i] == NONE ? NONE : l->rows++;
 }
 
+/* ---- rows of like elements, side by side ---- */
+
+enum { SQUARED = 1, FIRST = 2, SECOND = 4, FEWEST_ALIKE = 4 };
+
+/* Products that turns make, by their sequences; use: per sequence, in what products it stands */
+static int list_products(const struct expansion *x, struct product_run **product, int *use)
+{
+	int count = 0;
+	for (int i = 0; i < x->count; i++)
+		for (int k = 0; k < x->sequence[i].terms && x->sequence[i].top > 0; k++) {
+			const struct sequence_term *term = &x->sequence[i].term[k];
+			if (term->kind != TERM_PRODUCT)
+				continue;
+			use[term->a] |= term->a == term->b ? SQUARED : FIRST;
+			use[term->b] |= term->a == term->b ? SQUARED : SECOND;
+			*MORE(*product, count) = (struct product_run){ .a = term->a, .b = term->b, .count = 1 };
+		}
+	return count;
+}
+
+static bool is_alike(const struct expansion *x, const struct lines *l, const int *use, int i, int j)
+{
+	const struct sequence *a = &x->sequence[i], *b = &x->sequence[j];
+	if (a->state != NONE || b->state != NONE)
+		return a->state != NONE && b->state != NONE;
+	bool alike = a->kind == b->kind && a->terms == b->terms && use[i] == use[j] && l->offset[i] == l->offset[j];
+	for (int k = 0; alike && k < a->terms; k++)
+		alike = a->term[k].kind == b->term[k].kind;
+	return alike;
+}
+
+/* Rows that follow those of the first that is like them */
+static int *rows_by_kind(const struct expansion *x, const struct lines *l, const int *use)
+{
+	int *row = ARRAY(int, x->count), rows = 0;
+	for (int i = 0; i < x->count; i++)
+		row[i] = NONE;
+	for (int i = 0; i < x->count; i++)
+		for (int j = i, first = row[i]; j < x->count && first == NONE && l->row[i] != NONE; j++)
+			if (l->row[j] != NONE && row[j] == NONE && is_alike(x, l, use, i, j))
+				row[j] = rows++;
+	return row;
+}
+
+/* As runs join them: those of one distance between the factors together, rising */
+static int by_rows(const void *a, const void *b)
+{
+	const struct product_run *p = a, *q = b;
+	const int distance = (p->b - p->a) - (q->b - q->a);
+	return p->offset != q->offset ? p->offset - q->offset : distance ? distance : p->a - q->a;
+}
+
+/* Products of which each follows the one before in both rows become one run; said is how many runs are left. */
+static int join_products(int count, struct product_run *product)
+{
+	int runs = 0;
+	qsort(product, (size_t)count, sizeof *product, by_rows);
+	for (int i = 0; i < count; i++) {
+		struct product_run *last = runs ? &product[runs - 1] : NULL;
+		const bool follows = last && product[i].a == last->a + last->count &&
+				     product[i].b == last->b + last->count && product[i].offset == last->offset;
+		if (follows)
+			last->count++;
+		else
+			product[runs++] = product[i];
+	}
+	return runs;
+}
+
+/* Where most products are those of like elements rows are numbered so that these are made side by side. */
+static void place_alike(const struct expansion *x, struct lines *l)
+{
+	SCRATCH int *use = ARRAY(int, x->count);
+	struct product_run *product = NULL;
+	const int count = list_products(x, &product, use);
+	int *row = rows_by_kind(x, l, use), joined = 0;
+	for (int i = 0; i < count; i++) {
+		product[i].a = row[product[i].a];
+		product[i].b = row[product[i].b];
+	}
+	for (int i = join_products(count, product) - 1; i >= 0; i--)
+		joined += product[i].count >= FEWEST_ALIKE ? product[i].count : 0;
+	l->across = 4 * joined >= 3 * count && count > 0;
+	l->row = l->across ? row : l->row;
+}
+
+void find_runs(struct lines *l)
+{
+	struct product_run *product = NULL;
+	int count = 0;
+	l->place = ARRAY(int, l->values + 1);
+	l->runs = l->inners = 0;
+	for (int i = 0; i < l->values; i++) {
+		const struct stage_value *v = &l->value[i];
+		const bool made = l->offset[v->a] >= v->offset && l->offset[v->b] >= v->offset;
+		l->place[i] = NONE;
+		if (l->across && made && (v->kind == STAGE_INNER || v->kind == STAGE_SQUARE))
+			*MORE(product, count) = (struct product_run){ l->row[v->a], l->row[v->b], v->offset, 1, i };
+	}
+	SCRATCH struct product_run *run = ARRAY(struct product_run, count + 1);
+	for (int i = 0; i < count; i++)
+		run[i] = product[i];
+	const int runs = join_products(count, run);
+	qsort(product, (size_t)count, sizeof *product, by_rows);
+	for (int i = 0, k = 0; i < runs; k += run[i++].count) {
+		if (run[i].count < FEWEST_ALIKE)
+			continue;
+		*MORE(l->run, l->runs) = run[i];
+		for (int j = 0; j < run[i].count; j++)
+			l->place[product[k + j].value] = l->inners++;
+	}
+}
+
 struct lines *lines_of(const struct expansion *x, int states)
 {
 	struct lines *l = NEW(struct lines);
@@ -101,6 +215,7 @@ struct lines *lines_of(const struct expansion *x, int states)
 		deepest = l->offset[i] < deepest ? l->offset[i] : deepest;
 	}
 	number_rows(x, l);
+	place_alike(x, l);
 	l->first = 1 - deepest;
 	l->last = last;
 	l->width = (last > l->first ? last : l->first) + 2;
@@ -161,6 +276,12 @@ int *system_columns(const struct linear_equations *e, int *first)
 }
 
 /* ---- its C ---- */
+
+const char *line_place(const struct lines *l, int sequence, const char *k)
+{
+	const int row = l->row[sequence];
+	return l->across ? format("table_by_0[%s][%d]", k, row) : format("table_by_0[%d][%s]", row, k);
+}
 
 const char *stage_index(int offset)
 {

@@ -13,6 +13,12 @@ struct tape *tape_of_recurrences(const struct recurrences *r)
 	return r->t;
 }
 
+void recurrences_begin_turn(struct recurrences *r)
+{
+	if (r->lines->across && r->names.turn)
+		tape_statement(r->t, r->names.turn);
+}
+
 /* ---- sums ---- */
 
 /* a_i b_j */
