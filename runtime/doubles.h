@@ -119,6 +119,7 @@
 #undef pl_guards_advance_d
 #undef pl_guards_change_d
 #undef pl_switching_advance_d
+#undef pl_switching_follow_d
 #undef pl_guards_compensated_start_d
 #undef pl_switching_compensated_start_d
 #undef pl_guards_compensated_advance_d

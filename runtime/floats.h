@@ -119,6 +119,7 @@
 #define pl_guards_advance_d pl_guardsf_advance_d
 #define pl_guards_change_d pl_guardsf_change_d
 #define pl_switching_advance_d pl_switchingf_advance_d
+#define pl_switching_follow_d pl_switchingf_follow_d
 #define pl_guards_compensated_start_d pl_guardsf_compensated_start_d
 #define pl_switching_compensated_start_d pl_switchingf_compensated_start_d
 #define pl_guards_compensated_advance_d pl_guardsf_compensated_advance_d

@@ -111,6 +111,9 @@ static inline void pl_variation_change(pl_variation *v, int size, const PL_REAL 
 void pl_switching_start_d(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_switching_advance_d(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                             PL_REAL *work, pl_variation *v);
+/* Through so many crossings over h, which are all that it has */
+void pl_switching_follow_d(const pl_switching *m, int count, const pl_crossing *crossing, PL_REAL *x, pl_contact *c,
+                           pl_variation *v);
 void pl_guards_start_d(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_guards_advance_d(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
                          PL_REAL *work, pl_variation *v);

@@ -30,7 +30,9 @@
  *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables;
  *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h},
  *                                which is in PL_WHOLE_STEP
- *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free */
+ *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free, where
+ *                                PL(cross) has found all crossings PL(vary_through), else PL(vary_searched), which
+ *                                moves s as well */
 #include "numbers.h"
 
 /* ---- what the search goes by ---- */
@@ -355,16 +357,10 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 #endif
 
 #if PL_SWITCHING_FUNCTIONS > 0
-/* By the search, from x; its states are those of s */
-static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
+/* Where the search has come to */
+static inline void PL(arrive)(PL_TYPE *s, const real x[PL_VECTOR])
 {
     int i;
-#if PL_EVENT_FREE && PL_GUARDS
-    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
-        x[i] = s->y[PL_PLACE(i)];
-    }
-#endif
-    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
     for (i = 0; i < PL_STATES; i++) {
         s->y[PL_PLACE(i)] = x[i];
 #if PL_COMPENSATED
@@ -373,92 +369,33 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
     }
     s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);
 }
+
+/* By the search, from x; its states are those of s */
+static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
+{
+#if PL_EVENT_FREE && PL_GUARDS
+    int i;
+    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+        x[i] = s->y[PL_PLACE(i)];
+    }
+#endif
+    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
+    PL(arrive)(s, x);
+}
 #endif
 
 #if PL_EVENT_FREE && PL_GUARDS
-/* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
- * through memory; and one by one, as two in one store would have to be put together first. */
-static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
-{
-    double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
-    volatile double *const y = s->y;
-    int i;
-    if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
-        return 0;
-    }
-    PL_EACH
-    for (i = 0; i < PL_STATES; i++) {
-        y[PL_PLACE(i)] = end[i];
-    }
-    s->contact PL_PART.crossings = 0;
-    return 1;
-}
-
-#if PL_FEW_REGIONS
-#define PL_CASE(k) case k: return k < PL_REGIONS && PL(unmet)(s, k, x);
-#define PL_CASES(k) PL_CASE(k) PL_CASE(k + 1) PL_CASE(k + 2)
-
-/* The same in the region where s is */
-static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
-{
-    const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
-    int i;
-    PL_UNROLL
-    for (i = 0; i < PL_STATES; i++) {
-        x[i] = y[PL_PLACE(i)];
-    }
-    switch (s->contact PL_PART.region) {
-    PL_CASES(0)
-#if PL_REGIONS > 3
-    PL_CASES(3)
-    PL_CASES(6)
-#endif
-#if PL_REGIONS > 9
-    PL_CASES(9)
-    PL_CASES(12)
-    PL_CASE(15)
-#endif
-    default:
-        return 0;
-    }
-}
-#else
-static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
-{
-    return PL(unmet)(s, s->contact PL_PART.region, x);
-}
-#endif
-
-/* By the search.  x has no place in memory there, which each step would have to fill. */
-static PL_INLINE void PL(seek_again)(PL_TYPE *s, const real x[PL_VECTOR])
-{
-    real again[PL_VECTOR];
-    volatile real *const from = again;
-    int i;
-    PL_EACH
-    for (i = PL_SOFT ? 0 : PL_STATES; i < PL_VECTOR; i++) {
-        from[i] = x[i];
-    }
-    PL(by_search)(s, again);
-}
-
-/* s over h by that, or by the search */
-static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
-{
-    if (PL_SOFT) {
-        PL(by_search)(s, x);
-    } else if (!PL(unmet_here)(s, x)) {
-        PL(seek_again)(s, x);
-    }
-}
+#define PL_SEEKS 1
+#include "unmet.h"
+#undef PL_SEEKS
 #endif
 
 #if PL_COLUMNS_D > 0
-/* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is; s stays. */
-static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact,
-                     real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+/* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is, which moves
+ * along.  known: so many crossings are there, and all; -1: they are searched for */
+static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing,
+                           int known, real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
     real scale[PL_SIZE], when[PL_COLUMNS_D], dg[PL_COLUMNS_D], noise[PL_SIZE];
     real work[PL_VARIATION_WORK(PL_SIZE, PL_DEGREE_D)];
     pl_variation v;
@@ -489,7 +426,14 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
             S[p][i] = ds->s[p][PL_PLACE(i)];
         }
     }
-    PL(search_step)(s, tau, x, &contact, crossing, &v);
+#if PL_SHARED && PL_FEW > 0
+    if (known >= 0) {
+        pl_switching_follow_d(&PL(switching), known, crossing, x, contact, &v);
+    } else
+#else
+    (void)known;
+#endif
+    PL(search_step)(s, tau, x, contact, crossing, &v);
     for (i = 0; i < PL_STATES; i++) {
         ds->scale[PL_PLACE(i)] = scale[i];
     }
@@ -498,7 +442,7 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
             ds->s[p][PL_PLACE(i)] = S[p][i];
         }
     }
-    if (contact.status & PL_UNDECIDED) {
+    if (contact->status & PL_UNDECIDED) {
         pl_doubt_add(&v.doubt, PL_D_UNDECIDED, -1, tau);
     }
 #if !PL_ALONE
@@ -509,9 +453,49 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
     pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
     ds->status = ds->doubt.status;
 }
+
+/* s stays. */
+static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact,
+                     real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+{
+    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+    PL(vary_along)(s, tau, x, &contact, crossing, -1, S, ds);
+}
 #endif
 
 #if PL_SHARED
+/* s over h too, by the same search, or by the shorter way that it has without derivatives */
+static void PL(vary_searched)(PL_TYPE *s, real x[PL_VECTOR], real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+{
+#if PL_EVENT_FREE && PL_GUARDS && PL_MEETS
+    real from[PL_VECTOR];
+    int i;
+    for (i = 0; i < PL_VECTOR; i++) {
+        from[i] = x[i];
+    }
+    PL(vary)(s, PL_H, from, s->contact PL_PART, S, ds);
+    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
+#else
+    PL(vary_along)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART, -1, S, ds);
+#endif
+    PL(arrive)(s, x);
+}
+
+#if PL_FEW > 0
+/* Over h from x in this region, where s has begun and met the crossings that it has */
+static void PL(vary_through)(const PL_TYPE *s, real x[PL_VECTOR], pl_contact from,
+                             real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+{
+    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+    int i;
+    for (i = 0; i < s->contact PL_PART.crossings; i++) {
+        crossing[i] = s->crossing PL_PART[i];
+    }
+    PL(vary_along)(s, PL_H, x, &from, crossing, s->contact PL_PART.crossings, S, ds);
+}
+#endif
+
+#if PL_EVENT_FREE
 /* row . x, of so many entries */
 static PL_INLINE real PL(part_of_row)(const real *row, const real *x, int entries)
 {
@@ -559,6 +543,7 @@ static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], rea
         }
     }
 }
+#endif
 #endif
 
 #if PL_ALONE

@@ -5,7 +5,8 @@
  * is accepted here leaves nothing to take up, nothing that touches, and each guard below its limit by the bound of the
  * search.  A guard that has just been left, and what is less certain, go by the search.  PL_SUM(row, x) is of PL_SIZE
  * products; bit i of PL_CAPPED is set where x_i is never above 1.  PL_VALUE is a number, or lanes of numbers, and what
- * is true then so in some lanes. */
+ * is true then so in some lanes.  With PL_SEEKS, behind these: a step of s. */
+#ifndef PL_SEEKS
 #ifndef PL_VALUE
 #define PL_VALUE double
 #define PL_TRUTH int
@@ -483,5 +484,84 @@ static int PL(meets_one)(const pl_guards *m, double *x, pl_contact *c, pl_crossi
         x[i] = met == -1 ? end[i] : y[i];
     }
     return 1;
+}
+#endif
+
+#else
+
+/* s over h in a region, where it is sure that no guard is met.  Stored here, as what all regions store behind them goes
+ * through memory; and one by one, as two in one store would have to be put together first. */
+static PL_INLINE int PL(unmet)(PL_TYPE *s, int region, const double x[PL_SIZE])
+{
+    double end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
+    volatile double *const y = s->y;
+    int i;
+    if (!PL(keeps_all)(&PL(switching), region, x, end, size, place)) {
+        return 0;
+    }
+    PL_EACH
+    for (i = 0; i < PL_STATES; i++) {
+        y[PL_PLACE(i)] = end[i];
+    }
+    s->contact PL_PART.crossings = 0;
+    return 1;
+}
+
+#if PL_FEW_REGIONS
+#define PL_CASE(k) case k: return k < PL_REGIONS && PL(unmet)(s, k, x);
+#define PL_CASES(k) PL_CASE(k) PL_CASE(k + 1) PL_CASE(k + 2)
+
+/* The same in the region where s is */
+static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
+{
+    const volatile double *const y = s->y; /* one by one, as they are stored: two in one load would wait for that */
+    int i;
+    PL_UNROLL
+    for (i = 0; i < PL_STATES; i++) {
+        x[i] = y[PL_PLACE(i)];
+    }
+    switch (s->contact PL_PART.region) {
+    PL_CASES(0)
+#if PL_REGIONS > 3
+    PL_CASES(3)
+    PL_CASES(6)
+#endif
+#if PL_REGIONS > 9
+    PL_CASES(9)
+    PL_CASES(12)
+    PL_CASE(15)
+#endif
+    default:
+        return 0;
+    }
+}
+#else
+static PL_INLINE int PL(unmet_here)(PL_TYPE *s, double x[PL_VECTOR])
+{
+    return PL(unmet)(s, s->contact PL_PART.region, x);
+}
+#endif
+
+/* By the search.  x has no place in memory there, which each step would have to fill. */
+static PL_INLINE void PL(seek_again)(PL_TYPE *s, const real x[PL_VECTOR])
+{
+    real again[PL_VECTOR];
+    volatile real *const from = again;
+    int i;
+    PL_EACH
+    for (i = PL_SOFT ? 0 : PL_STATES; i < PL_VECTOR; i++) {
+        from[i] = x[i];
+    }
+    PL(by_search)(s, again);
+}
+
+/* s over h by that, or by the search */
+static PL_INLINE void PL(seek)(PL_TYPE *s, real x[PL_VECTOR])
+{
+    if (PL_SOFT) {
+        PL(by_search)(s, x);
+    } else if (!PL(unmet_here)(s, x)) {
+        PL(seek_again)(s, x);
+    }
 }
 #endif

@@ -387,12 +387,21 @@ void emit_event_check(const struct emitter *e)
 	for (int j = 0; j < layout->size && is_compensated(e); j++)
 		say(e, "        now[%d] = %s;\n", layout->size + j,
 		    j < e->system->states ? format("s->low[%d]", place_of_state(e, j)) : "0.0");
-	if (shares_step(e))
-		emit_shared_call(e, "vary_all", spell(e, "$N_H"));
-	say(e, e->step->regions.event_check.fast_path ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
-				"    }\n"
-			      : "        $o_seek(s, now);\n"
-				"    }\n");
+	const bool fast = e->step->regions.event_check.fast_path;
+	if (shares_step(e)) {
+		if (fast)
+			say(e, "        const pl_contact from = s->contact;\n"
+			       "        if ($o_cross(s, now)) {\n"
+			       "        if (ds != NULL) { $n_vary_crossed(s, ds%s, now, from); }\n"
+			       "        } else\n", sample_arguments(e));
+		emit_shared_search(e, "now", "seek");
+		say(e, "    }\n");
+		return;
+	}
+	say(e, fast ? "        if (!$o_cross(s, now)) { $o_seek(s, now); }\n"
+		      "    }\n"
+		    : "        $o_seek(s, now);\n"
+		      "    }\n");
 }
 
 /* ---- the same over lanes of a batch: each in its region, those left that may have an event ---- */

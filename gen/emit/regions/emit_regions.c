@@ -413,13 +413,14 @@ static void emit_searched_step(const struct emitter *e)
 	emit_set_aside(e);
 	emit_rotated_loads(e, needed_loads(e), false);
 	emit_region_vector(e, true);
-	if (shares_step(e)) {
+	if (shares_step(e) && e->step->regions.event_check.is_made) {
 		say(e, "    if ($o_unmet_here(s, x)) {\n");
 		emit_shared_call(e, "vary_clear", "x");
 		say(e, "    } else {\n");
-		emit_shared_call(e, "vary_all", spell(e, "$N_H"));
-		say(e, "        $o_seek_again(s, x);\n"
-		       "    }\n");
+		emit_shared_search(e, "x", "seek_again");
+		say(e, "    }\n");
+	} else if (shares_step(e)) {
+		emit_shared_search(e, "x", "seek");
 	} else {
 		say(e, "    $o_seek(s, x);\n");
 	}
@@ -553,7 +554,7 @@ void declare_region_search(const struct emitter *e)
 	say(e, "\n"
 	       "/* The search for events over a step, or over its remaining part */\n"
 	       "static void $o_seek($n *s, double x[%d]);\n", size_of_vector(e));
-	if (shares_step(e) && has_guards(e))
+	if (shares_step(e) && has_guards(e) && e->step->regions.event_check.is_made)
 		say(e, "static int $o_unmet_here($n *s, double x[%d]);\n"
 		       "static void $o_seek_again($n *s, const double x[%d]);\n", size_of_vector(e), size_of_vector(e));
 	if (e->step->regions.event_check.fast_path)

@@ -81,17 +81,50 @@ static void emit_acting_beside(const struct emitter *e)
 	}
 }
 
-/* ds over an event-free step, in which s may be already; x: where it began */
-static void emit_clear_step(const struct emitter *e)
+static void open_doubts(const struct emitter *e)
 {
-	open_function(e, NULL, "static PL_INLINE void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d])",
-		      sample_parameters(e), size_of_vector(e));
+	say(e, "    const unsigned known = ds->status;\n"
+	       "    int i;\n");
+}
+
+static void close_doubts(const struct emitter *e)
+{
+	say(e, "    for (i = 0; i < 4; i++) {  /* times are after the start of the step */\n"
+	       "        if ((ds->status & ~known) >> i & 1u) { ds->doubt.time[i] += $n_time(s); }\n"
+	       "    }\n");
+}
+
+/* ds over a step from x, in which s may be already: what acts on the states, then `call` */
+static void emit_from_start(const struct emitter *e, bool doubts, const char *call)
+{
+	if (doubts)
+		open_doubts(e);
 	say(e, "    const double t = $n_time(s);\n"
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", e->step->layout.size);
 	declare_varied_params(e);
 	emit_acting_beside(e);
-	say(e, "    $o_vary_free(s, x, S, ds);\n");
+	say(e, "    $o_%s;\n", call);
+	if (doubts)
+		close_doubts(e);
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
+}
+
+static void emit_shared_steps(const struct emitter *e)
+{
+	const char *seeds = sample_parameters(e);
+	const int size = size_of_vector(e);
+	if (e->step->regions.event_check.is_made) {
+		open_function(e, NULL, "static PL_INLINE void $n_vary_clear(const $n *s, $n_d *ds%s, "
+			      "const double x[%d])", seeds, size);
+		emit_from_start(e, false, "vary_free(s, x, S, ds)");
+	}
+	open_function(e, NULL, "static void $n_vary_met($n *s, $n_d *ds%s, double x[%d])", seeds, size);
+	emit_from_start(e, true, "vary_searched(s, x, S, ds)");
+	if (e->step->regions.event_check.fast_path) {
+		open_function(e, NULL, "static void $n_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], "
+			      "pl_contact from)", seeds, size);
+		emit_from_start(e, true, "vary_through(s, x, from, S, ds)");
+	}
 }
 
 /* Its loads now */
@@ -160,17 +193,14 @@ void emit_all_varied(const struct emitter *e)
 		each_part(e, emit_varied_step);
 	}
 	if (shares_step(e))
-		emit_clear_step(e);
+		emit_shared_steps(e);
 	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
-	say(e, "    const unsigned known = ds->status;\n"
-	       "    int i;\n");
+	open_doubts(e);
 	if (e->step->derivatives->regions)
 		say(e, "    $n_d_vary_by(s, ds%s, tau);\n", sample_arguments(e));
 	else
 		each_part(e, emit_vary_call);
-	say(e, "    for (i = 0; i < 4; i++) {  /* times are after the start of the step */\n"
-	       "        if ((ds->status & ~known) >> i & 1u) { ds->doubt.time[i] += $n_time(s); }\n"
-	       "    }\n");
+	close_doubts(e);
 	close_function(e, "");
 }
 

@@ -66,6 +66,7 @@ const char *sample_arguments(const struct emitter *e);
 void declare_shared_step(const struct emitter *e);
 void open_shared_step(const struct emitter *e);
 void emit_shared_call(const struct emitter *e, const char *function, const char *last);
+void emit_shared_search(const struct emitter *e, const char *x, const char *own); /* of both, or by $o_OWN of s alone */
 void close_shared_step(const struct emitter *e);
 
 /* ---- emit_parts.c: the parts, each as it would be alone ---- */

@@ -478,7 +478,7 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 		if (v.over)
 			emit_varied_steps(e, v.over);
 	}
-	if (any_pieces(e) && shares_step(e))
+	if (any_pieces(e) && shares_step(e) && e->step->regions.event_check.is_made)
 		emit_whole_steps(e);
 	say_macro(e, "WHOLE_STEP", any_pieces(e) ? "PL(whole_step)" : "PL_OF(pieces)");
 	say_macro(e, "VARIED_STEP", v.over ? "PL_OF(varied_step)[0]" : "NULL");
@@ -509,9 +509,10 @@ void emit_variation_macros(const struct emitter *e)
 
 bool shares_step(const struct emitter *e)
 {
-	return has_variation(e) && !e->step->shown->derivatives->regions && e->step->regions.event_check.is_made &&
-	       !e->part && !is_compensated(e) && !has_peaks(e) && !e->step->carried.count &&
-	       !(any_pieces(e) && e->model->params.retuned);
+	return has_variation(e) && !e->step->shown->derivatives->regions && !e->part && !e->step->regions.parts &&
+	       !has_peaks(e) && !e->step->carried.count &&
+	       !(e->step->regions.event_check.is_made &&
+		 (is_compensated(e) || (any_pieces(e) && e->model->params.retuned)));
 }
 
 const char *no_variation(const struct emitter *e)
@@ -539,20 +540,31 @@ const char *sample_arguments(const struct emitter *e)
 
 void declare_shared_step(const struct emitter *e)
 {
-	say(e, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau);\n"
-	       "static void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d]);\n",
-	    sample_parameters(e), sample_parameters(e), size_of_vector(e));
+	const int size = size_of_vector(e);
+	if (e->step->regions.event_check.is_made)
+		say(e, "static void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d]);\n",
+		    sample_parameters(e), size);
+	say(e, "static void $n_vary_met($n *s, $n_d *ds%s, double x[%d]);\n", sample_parameters(e), size);
+	if (e->step->regions.event_check.fast_path)
+		say(e, "static void $n_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], pl_contact from);\n",
+		    sample_parameters(e), size);
 }
 
 void open_shared_step(const struct emitter *e)
 {
-	open_function(e, "A step, and unless ds is NULL that of derivatives: where it is event-free is decided once",
+	open_function(e, "A step, and unless ds is NULL that of derivatives: its events are looked for once",
 		      "static PL_INLINE void $n_step_both($n *s, $n_d *ds%s)", sample_parameters(e));
 }
 
 void emit_shared_call(const struct emitter *e, const char *function, const char *last)
 {
 	say(e, "        if (ds != NULL) { $n_%s(s, ds%s, %s); }\n", function, sample_arguments(e), last);
+}
+
+void emit_shared_search(const struct emitter *e, const char *x, const char *own)
+{
+	emit_shared_call(e, "vary_met", x);
+	say(e, "        else { $o_%s(s, %s); }\n", own, x);
 }
 
 void close_shared_step(const struct emitter *e)
