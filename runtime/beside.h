@@ -24,82 +24,82 @@
  * taken */
 static inline real PL(clock)(const PL_OF_TYPE *s)
 {
-    const real t = PL_OF(time)(s);
-    return t - (real)0x1p-30 * PL_H - (PL_SINGLE ? (real)0x1p-17 : (real)0x1p-46) * pl_magnitude(t);
+	const real t = PL_OF(time)(s);
+	return t - (real)0x1p-30 * PL_H - (PL_SINGLE ? (real)0x1p-17 : (real)0x1p-46) * pl_magnitude(t);
 }
 
 /* The states and derivatives that the model and ds have */
 static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_STATES])
 {
-    real y[PL_OWN_STATES];
-    int i;
-    PL_OF(get)(s, y);
-    for (i = 0; i < PL_STATES; i++) {
-        const int p = PL(moved_column)[i], of = PL(moved_state)[i];
-        z[i] = of < -1 ? PL(clock)(s) : of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
-    }
+	real y[PL_OWN_STATES];
+	int i;
+	PL_OF(get)(s, y);
+	for (i = 0; i < PL_STATES; i++) {
+		const int p = PL(moved_column)[i], of = PL(moved_state)[i];
+		z[i] = of < -1 ? PL(clock)(s) : of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
+	}
 }
 
 /* Whether the model and ds are what the last step of both has left */
 static int PL(is_left)(const PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds, const real z[PL_STATES])
 {
-    real w[PL_STATES];
-    int i, left = PL_OF(time)(s) == ds->time;
-    PL(get)(b, w);
-    for (i = 0; i < PL_STATES; i++) {
-        const int own = PL(moved_column)[i] < 0 && PL(moved_state)[i] >= 0;
-        left = left && (PL(moved_state)[i] < -1 || z[i] == (own ? ds->left[PL(moved_state)[i]] : w[i]));
-    }
-    return left;
+	real w[PL_STATES];
+	int i, left = PL_OF(time)(s) == ds->time;
+	PL(get)(b, w);
+	for (i = 0; i < PL_STATES; i++) {
+		const int own = PL(moved_column)[i] < 0 && PL(moved_state)[i] >= 0;
+		left = left && (PL(moved_state)[i] < -1 || z[i] == (own ? ds->left[PL(moved_state)[i]] : w[i]));
+	}
+	return left;
 }
 
 static void PL(take_samples)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 {
 #if PL_INPUTS > 0
-    int i;
-    for (i = 0; i < PL_OWN_INPUTS; i++) {
-        b->u[i] = s->u[i];
+	int i;
+	for (i = 0; i < PL_OWN_INPUTS; i++) {
+		b->u[i] = s->u[i];
 #if PL_PAST_SAMPLES > 0
-        {
-            int k;
-            for (k = 0; k < PL_PAST_SAMPLES; k++) {
-                b->past[i][k] = s->past[i][k];
-            }
-        }
+		{
+			int k;
+			for (k = 0; k < PL_PAST_SAMPLES; k++) {
+				b->past[i][k] = s->past[i][k];
+			}
+		}
 #endif
-    }
+	}
 #if PL_SEEDED
-    for (i = PL_OWN_INPUTS; i < PL_INPUTS; i++) {
-        b->u[i] = ds->du[PL(moved_input)[i]];
-    }
+	for (i = PL_OWN_INPUTS; i < PL_INPUTS; i++) {
+		b->u[i] = ds->du[PL(moved_input)[i]];
+	}
 #endif
 #endif
-    (void)b;
-    (void)s;
-    (void)ds;
+	(void)b;
+	(void)s;
+	(void)ds;
 }
 
 #if PL_PARAMS > 0
 /* As the model has been retuned meanwhile; not 0: there are no such factors */
 static int PL(follow_params)(PL_TYPE *b, const PL_OF_TYPE *s)
 {
-    int i, same = 1, status = 0;
-    for (i = 0; i < PL_PARAMS; i++) {
-        same = same && b->coeffs.params[i] == s->coeffs.params[i];
-    }
+	int i, same = 1, status = 0;
+	for (i = 0; i < PL_PARAMS; i++) {
+		same = same && b->coeffs.params[i] == s->coeffs.params[i];
+	}
 #if PL_TUNED
-    same = same && b->coeffs.h == s->coeffs.h;
+	same = same && b->coeffs.h == s->coeffs.h;
 #endif
-    if (!same) {
-        PL(coeffs) fresh = b->coeffs;
+	if (!same) {
+		PL(coeffs) fresh = b->coeffs;
 #if PL_TUNED
-        status = PL(retune)(&fresh, s->coeffs.params, s->coeffs.h);
+		status = PL(retune)(&fresh, s->coeffs.params, s->coeffs.h);
 #else
-        status = PL(retune)(&fresh, s->coeffs.params, PL_H);
+		status = PL(retune)(&fresh, s->coeffs.params, PL_H);
 #endif
-        PL(use)(b, &fresh);
-    }
-    return status;
+		PL(use)(b, &fresh);
+	}
+	return status;
 }
 #endif
 
@@ -107,47 +107,48 @@ static int PL(follow_params)(PL_TYPE *b, const PL_OF_TYPE *s)
  * meanwhile begins anew. */
 static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 {
-    real z[PL_STATES];
-    int i;
+	real z[PL_STATES];
+	int i;
 #if PL_PARAMS > 0
-    (void)PL(follow_params)(b, s);
+	(void)PL(follow_params)(b, s);
 #endif
-    PL(both_states)(s, ds, z);
-    PL(take_samples)(b, s, ds);
-    if (!PL(is_left)(b, s, ds, z)) {
-        PL(set)(b, PL_OF(time)(s), z);
+	PL(both_states)(s, ds, z);
+	PL(take_samples)(b, s, ds);
+	if (!PL(is_left)(b, s, ds, z)) {
+		PL(set)(b, PL_OF(time)(s), z);
 #if PL_CONSTRAINTS
-        /* Seeds, which have no time (back.h), need not fulfil the derivatives of the constraints: what they miss would
-         * go other ways by other steps, and the derivatives of a step were not linear in them. */
-        if (ds->time <= (real)-0x1p120) {
-            (void)PL(project_rounded)(b, 0, z);
-            PL(set)(b, PL_OF(time)(s), z);
-        }
+		/* Seeds, which have no time (back.h), need not fulfil the derivatives of the constraints: what they
+		 * miss would
+		 * go other ways by other steps, and the derivatives of a step were not linear in them. */
+		if (ds->time <= (real)-0x1p120) {
+			(void)PL(project_rounded)(b, 0, z);
+			PL(set)(b, PL_OF(time)(s), z);
+		}
 #endif
 #if PL_SEGMENTS > 1
-        /* its time is counted in steps, not rounded: what changes now has changed */
-        b->t0 = s->t0;
-        b->k = s->k;
-        b->segment = 0;
-        PL(pass_segments)(b);
+		/* its time is counted in steps, not rounded: what changes now has changed */
+		b->t0 = s->t0;
+		b->k = s->k;
+		b->segment = 0;
+		PL(pass_segments)(b);
 #if PL_PLACES
-        PL(place)(b);
+		PL(place)(b);
 #endif
 #endif
-        return;
-    }
-    for (i = 0; i < PL_STATES && PL_ENDED(b); i++) {
-        b->y[i] = PL(moved_column)[i] < 0 ? z[i] : b->y[i];
-    }
+		return;
+	}
+	for (i = 0; i < PL_STATES && PL_ENDED(b); i++) {
+		b->y[i] = PL(moved_column)[i] < 0 ? z[i] : b->y[i];
+	}
 }
 
 #if PL_INPUTS > 0
 static void PL(both_samples)(const real *u, const real *du, real both[PL_INPUTS])
 {
-    int i;
-    for (i = 0; i < PL_INPUTS; i++) {
-        both[i] = i < PL_OWN_INPUTS ? u[i] : du == NULL ? 0 : du[PL(moved_input)[i]];
-    }
+	int i;
+	for (i = 0; i < PL_INPUTS; i++) {
+		both[i] = i < PL_OWN_INPUTS ? u[i] : du == NULL ? 0 : du[PL(moved_input)[i]];
+	}
 }
 #define PL_BOTH , both
 #else
@@ -156,73 +157,73 @@ static void PL(both_samples)(const real *u, const real *du, real both[PL_INPUTS]
 
 static void PL(step_beside)(PL_TYPE *b, const PL_OF_TYPE *s, PL_OF(d) *ds, const real *u, const real *du)
 {
-    real z[PL_STATES];
-    int i;
+	real z[PL_STATES];
+	int i;
 #if PL_INPUTS > 0
-    real both[PL_INPUTS];
-    PL(both_samples)(u, du, both);
+	real both[PL_INPUTS];
+	PL(both_samples)(u, du, both);
 #endif
 #if PL_PARAMS > 0
-    if (PL(follow_params)(b, s)) {
-        pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
-    }
+	if (PL(follow_params)(b, s)) {
+		pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
+	}
 #endif
-    PL(follow)(b, s, ds);
-    PL(step)(b PL_BOTH);
-    PL(get)(b, z);
-    for (i = 0; i < PL_STATES; i++) {
-        if (PL(moved_column)[i] >= 0) {
-            ds->s[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
-        }
-    }
-    if (PL(status)(b) & ~(PL_UNDECIDED | PL_INACCURATE)) {
-        pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
-    }
+	PL(follow)(b, s, ds);
+	PL(step)(b PL_BOTH);
+	PL(get)(b, z);
+	for (i = 0; i < PL_STATES; i++) {
+		if (PL(moved_column)[i] >= 0) {
+			ds->s[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
+		}
+	}
+	if (PL(status)(b) & ~(PL_UNDECIDED | PL_INACCURATE)) {
+		pl_doubt_add(&ds->doubt, PL_D_FAILED, -1, PL_OF(time)(s));
+	}
 #if PL_MOVED
-    pl_doubt_join(&ds->doubt, &b->contact.doubt, PL_OF(time)(s));
+	pl_doubt_join(&ds->doubt, &b->contact.doubt, PL_OF(time)(s));
 #endif
-    ds->status = ds->doubt.status;
-    (void)u;
-    (void)du;
+	ds->status = ds->doubt.status;
+	(void)u;
+	(void)du;
 }
 
 #if PL_DECLARED
 static void PL(out_beside)(const PL_OF_TYPE *s, const PL_OF(d) *ds, const PL_TYPE *from,
-                           real J[PL_OWN_OUTPUTS][PL_DERIVATIVES])
+						   real J[PL_OWN_OUTPUTS][PL_DERIVATIVES])
 {
-    PL_TYPE b = *from;
-    real out[PL_OUTPUTS];
-    int i, p;
-    PL(follow)(&b, s, ds);
-    PL(out)(&b, out);
-    for (i = 0; i < PL_OWN_OUTPUTS; i++) {
-        for (p = 0; p < PL_WIDE; p++) {
-            J[i][PL_FROM + p] = out[PL_OWN_OUTPUTS * (p + 1) + i];
-        }
-    }
+	PL_TYPE b = *from;
+	real out[PL_OUTPUTS];
+	int i, p;
+	PL(follow)(&b, s, ds);
+	PL(out)(&b, out);
+	for (i = 0; i < PL_OWN_OUTPUTS; i++) {
+		for (p = 0; p < PL_WIDE; p++) {
+			J[i][PL_FROM + p] = out[PL_OWN_OUTPUTS * (p + 1) + i];
+		}
+	}
 }
 #endif
 
 #if PL_AT
 static void PL(at_beside)(const PL_OF_TYPE *s, const PL_OF(d) *ds, const PL_TYPE *from, const real *u, const real *du,
-                          real tau, real S[PL_DERIVATIVES][PL_OWN_STATES])
+						  real tau, real S[PL_DERIVATIVES][PL_OWN_STATES])
 {
-    PL_TYPE b = *from;
-    real z[PL_STATES];
-    int i;
+	PL_TYPE b = *from;
+	real z[PL_STATES];
+	int i;
 #if PL_INPUTS > 0
-    real both[PL_INPUTS];
-    PL(both_samples)(u, du, both);
+	real both[PL_INPUTS];
+	PL(both_samples)(u, du, both);
 #endif
-    PL(follow)(&b, s, ds);
-    PL(at)(&b PL_BOTH, tau, z);
-    for (i = 0; i < PL_STATES; i++) {
-        if (PL(moved_column)[i] >= 0) {
-            S[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
-        }
-    }
-    (void)u;
-    (void)du;
+	PL(follow)(&b, s, ds);
+	PL(at)(&b PL_BOTH, tau, z);
+	for (i = 0; i < PL_STATES; i++) {
+		if (PL(moved_column)[i] >= 0) {
+			S[PL(moved_column)[i]][PL(moved_state)[i]] = z[i];
+		}
+	}
+	(void)u;
+	(void)du;
 }
 #endif
 

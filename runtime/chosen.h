@@ -28,10 +28,10 @@
 static inline int PL(segment_of)(const PL_TYPE *s)
 {
 #if PL_SEGMENTS > 1
-    return s->segment;
+	return s->segment;
 #else
-    (void)s;
-    return 0;
+	(void)s;
+	return 0;
 #endif
 }
 #endif
@@ -40,7 +40,7 @@ static inline int PL(segment_of)(const PL_TYPE *s)
 /* How long the loads have the formulas that they have now [s]; `most`, where that does not end */
 static inline real PL(change_after)(const PL_TYPE *s, real most)
 {
-    return s->segment < PL_SEGMENTS - 1 ? PL(until)(s, s->segment) : most;
+	return s->segment < PL_SEGMENTS - 1 ? PL(until)(s, s->segment) : most;
 }
 #endif
 
@@ -49,33 +49,33 @@ static inline real PL(change_after)(const PL_TYPE *s, real most)
 static inline real PL(limit_of)(const PL_TYPE *s, real done, real end, int *segment)
 {
 #if PL_SEGMENTS > 1
-    for (; *segment < PL_SEGMENTS - 1; *segment += 1) {
-        const real change = PL(until)(s, *segment) / PL_H;
-        const real limit = change < end ? change : end;
-        if (limit > done) {
-            return limit;
-        }
-    }
+	for (; *segment < PL_SEGMENTS - 1; *segment += 1) {
+		const real change = PL(until)(s, *segment) / PL_H;
+		const real limit = change < end ? change : end;
+		if (limit > done) {
+			return limit;
+		}
+	}
 #endif
-    (void)s;
-    (void)done;
-    (void)segment;
-    return end;
+	(void)s;
+	(void)done;
+	(void)segment;
+	return end;
 }
 #endif
 
 /* Those whose time is over have others; whether some have */
 static inline int PL(change_loads)(PL_TYPE *s)
 {
-    int changed = 0;
+	int changed = 0;
 #if PL_SEGMENTS > 1
-    while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)(PL_SINGLE ? 1e-8 : 1e-18) * PL_H) {
-        s->segment++;
-        changed = 1;
-    }
+	while (s->segment < PL_SEGMENTS - 1 && PL(until)(s, s->segment) <= (real)(PL_SINGLE ? 1e-8 : 1e-18) * PL_H) {
+		s->segment++;
+		changed = 1;
+	}
 #endif
-    (void)s;
-    return changed;
+	(void)s;
+	return changed;
 }
 
 #if PL_IN_PARTS
@@ -83,12 +83,12 @@ static inline int PL(change_loads)(PL_TYPE *s)
 static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
 {
 #if PL_CHOICES
-    return PL(time)(s) + (from + to) / 2 * PL_H;
+	return PL(time)(s) + (from + to) / 2 * PL_H;
 #else
-    (void)s;
-    (void)from;
-    (void)to;
-    return 0;
+	(void)s;
+	(void)from;
+	(void)to;
+	return 0;
 #endif
 }
 #endif
@@ -99,13 +99,13 @@ static inline real PL(time_between)(const PL_TYPE *s, real from, real to)
 static inline real PL(middle)(const PL_TYPE *s)
 {
 #if PL_CHOICES && PL_SEGMENTS > 1
-    const real change = PL(change_after)(s, PL_H);
-    return PL(time)(s) + (change < PL_H ? change : PL_H) / 2;
+	const real change = PL(change_after)(s, PL_H);
+	return PL(time)(s) + (change < PL_H ? change : PL_H) / 2;
 #elif PL_CHOICES
-    return PL(time)(s) + PL_H / 2;
+	return PL(time)(s) + PL_H / 2;
 #else
-    (void)s;
-    return 0; /* there are none */
+	(void)s;
+	return 0; /* there are none */
 #endif
 }
 #endif
@@ -117,29 +117,29 @@ static inline real PL(middle)(const PL_TYPE *s)
  * lowest. */
 static inline void PL(forget)(PL(contact) *contact)
 {
-    int i;
-    contact->placed = contact->crossings = 0;
-    contact->total = 0;
+	int i;
+	contact->placed = contact->crossings = 0;
+	contact->total = 0;
 #if PL_CONTACTS
-    contact->rested = 0;
+	contact->rested = 0;
 #endif
 #if PL_MOVED
-    contact->doubt.status = 0;
+	contact->doubt.status = 0;
 #endif
-    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
-        contact->interval[i] = 0;
-    }
+	for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
+		contact->interval[i] = 0;
+	}
 }
 
 #if PL_AT_BREAKPOINTS
 /* Where a crossing is, of the switching function */
 static inline real PL(breakpoint_of)(const pl_crossing *crossing)
 {
-    int i, place = crossing->breakpoint;
-    for (i = 0; i < crossing->expression; i++) {
-        place += PL(breaks)[i];
-    }
-    return PL(breakpoint)[place];
+	int i, place = crossing->breakpoint;
+	for (i = 0; i < crossing->expression; i++) {
+		place += PL(breaks)[i];
+	}
+	return PL(breakpoint)[place];
 }
 #endif
 #endif
@@ -148,15 +148,15 @@ static inline real PL(breakpoint_of)(const pl_crossing *crossing)
 /* Passes the breakpoint of contact->last, so long after the start of the step; 0: there were too many */
 static int PL(cross)(PL(contact) *contact, real time)
 {
-    pl_crossing *last = &contact->last;
-    if (contact->crossings == PL_MAX_EVENTS) {
-        return 0;
-    }
-    last->time = time;
-    contact->crossing[contact->crossings++] = *last;
-    contact->total++;
-    contact->interval[last->expression] += last->upward ? 1 : -1;
-    return 1;
+	pl_crossing *last = &contact->last;
+	if (contact->crossings == PL_MAX_EVENTS) {
+		return 0;
+	}
+	last->time = time;
+	contact->crossing[contact->crossings++] = *last;
+	contact->total++;
+	contact->interval[last->expression] += last->upward ? 1 : -1;
+	return 1;
 }
 #endif
 
@@ -164,18 +164,19 @@ static int PL(cross)(PL(contact) *contact, real time)
 /* The intervals of a state that was set.  That of one switching function may choose what another is. */
 static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact)
 {
-    real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_SWITCHING_FUNCTIONS];
-    real start[PL_INPUTS + 1], slope[PL_INPUTS + 1]; /* no array is empty */
-    int i, again = PL_CHANGES;
-    PL(inputs_now)(s, u, start, slope);
-    for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
-        contact->interval[i] = 0;
-    }
-    contact->last.expression = -1;
-    contact->placed = 1;
-    do {
-        PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c, terms);
-    } while (pl_series_switching_place(&PL(series_switching), c[0], terms, contact->interval) && again-- > 0);
+	real c[PL_ORDER + 1][PL_COLUMNS], terms[PL_SWITCHING_FUNCTIONS];
+	real start[PL_INPUTS + 1], slope[PL_INPUTS + 1]; /* no array is empty */
+	int i, again = PL_CHANGES;
+	PL(inputs_now)(s, u, start, slope);
+	for (i = 0; i < PL_SWITCHING_FUNCTIONS; i++) {
+		contact->interval[i] = 0;
+	}
+	contact->last.expression = -1;
+	contact->placed = 1;
+	do {
+		PL(expand_from)(s, start, slope, 0, PL(middle)(s), PL(segment_of)(s), contact->interval, s->y, c,
+				terms);
+	} while (pl_series_switching_place(&PL(series_switching), c[0], terms, contact->interval) && again-- > 0);
 }
 #endif
 
@@ -187,10 +188,10 @@ static void PL(locate)(const PL_TYPE *s, const real u[], PL(contact) *contact);
 /* So that its formulas are known; crossings are counted anew. */
 static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *contact)
 {
-    if (!contact->placed) {
-        PL(locate)(s, u, contact);
-    }
-    contact->crossings = 0;
+	if (!contact->placed) {
+		PL(locate)(s, u, contact);
+	}
+	contact->crossings = 0;
 }
 #endif
 
@@ -198,8 +199,8 @@ static inline void PL(ready)(const PL_TYPE *s, const real u[], PL(contact) *cont
 /* Before the first impact of a step */
 static inline pl_chain PL(no_impact)(void)
 {
-    const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
-    return none;
+	const pl_chain none = {-PL_H, 0, 0, 0u, 0, 0, 0, 0, 0};
+	return none;
 }
 
 #if defined(PL_WAY)
@@ -207,45 +208,45 @@ static inline pl_chain PL(no_impact)(void)
  * way of a short flight would not show. */
 static void PL(guards_along)(real dt, real c[PL_WAY + 1][PL_TERMS])
 {
-    int i, m;
-    for (i = 0; i < PL(along).impacts; i++) {
-        const pl_event_impact *const p = &PL(along).impact[i];
-        const real per = (p->upward ? dt : -dt) * p->per;
-        for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
-            c[m + 1][p->expression] = per * c[m][PL_SWITCHING_FUNCTIONS + p->speed] / (real)(m + 1);
-        }
-    }
+	int i, m;
+	for (i = 0; i < PL(along).impacts; i++) {
+		const pl_event_impact *const p = &PL(along).impact[i];
+		const real per = (p->upward ? dt : -dt) * p->per;
+		for (m = 0; m < PL_WAY && p->hold >= 0; m++) {
+			c[m + 1][p->expression] = per * c[m][PL_SWITCHING_FUNCTIONS + p->speed] / (real)(m + 1);
+		}
+	}
 }
 #endif
 
 /* An instant at which something is met, but for how the series is made anew there */
 static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], real low[], real c[], real terms[],
-                              real work[])
+							  real work[])
 {
-    at->y = y;
-    at->low = low;
-    at->c = c;
-    at->terms = terms;
-    at->work = work;
-    at->interval = contact->interval;
-    at->total = &contact->total;
-    at->crossings = &contact->crossings;
-    at->rested = &contact->rested;
-    at->crossing = contact->crossing;
-    at->last = &contact->last;
-    at->unit = 1;
-    at->time = 0;
-    at->next = contact->last;
-    at->starting = at->freed = -1;
-    at->unlisted = 0;
-    at->status = 0;
-    at->chain = PL(no_impact)();
+	at->y = y;
+	at->low = low;
+	at->c = c;
+	at->terms = terms;
+	at->work = work;
+	at->interval = contact->interval;
+	at->total = &contact->total;
+	at->crossings = &contact->crossings;
+	at->rested = &contact->rested;
+	at->crossing = contact->crossing;
+	at->last = &contact->last;
+	at->unit = 1;
+	at->time = 0;
+	at->next = contact->last;
+	at->starting = at->freed = -1;
+	at->unlisted = 0;
+	at->status = 0;
+	at->chain = PL(no_impact)();
 #if PL_MOVED
-    at->doubt = &contact->doubt;
+	at->doubt = &contact->doubt;
 #else
-    at->doubt = NULL;
+	at->doubt = NULL;
 #endif
-    at->moved = NULL;
+	at->moved = NULL;
 }
 #endif
 
@@ -255,32 +256,32 @@ static PL_APART void PL(open)(pl_instant *at, PL(contact) *contact, real y[], re
 #if PL_REGIONS
 int PL(region)(const PL_TYPE *s)
 {
-    int i, region = 0;
-    for (i = PL_SWITCHING_FUNCTIONS - 1; i >= 0; i--) {
-        region = s->contact.interval[i] + (PL(breaks)[i] + 1) * region;
-    }
-    return region;
+	int i, region = 0;
+	for (i = PL_SWITCHING_FUNCTIONS - 1; i >= 0; i--) {
+		region = s->contact.interval[i] + (PL(breaks)[i] + 1) * region;
+	}
+	return region;
 }
 #endif
 
 uint64_t PL(crossed)(const PL_TYPE *s)
 {
-    return s->contact.total;
+	return s->contact.total;
 }
 
 int PL(crossings)(const PL_TYPE *s, pl_crossing crossing[PL_MAX_EVENTS])
 {
-    int i;
-    for (i = 0; i < s->contact.crossings; i++) {
-        crossing[i] = s->contact.crossing[i];
-    }
-    return s->contact.crossings;
+	int i;
+	for (i = 0; i < s->contact.crossings; i++) {
+		crossing[i] = s->contact.crossing[i];
+	}
+	return s->contact.crossings;
 }
 
 #if PL_BOUNCES
 int PL(rested)(const PL_TYPE *s)
 {
-    return s->contact.rested;
+	return s->contact.rested;
 }
 #endif
 #endif

@@ -16,17 +16,17 @@
  * sixteenth of what is missing, as its own rounding is of no sign: so that adds less than the state's. */
 static inline void PL(hold_energy)(const PL_TYPE *s, real y[PL_STATES], real low[PL_STATES])
 {
-    real energy[2], size, share;
-    int i;
-    PL(energies)(s, y, energy);
-    size = 2 * energy[0] + pl_magnitude(energy[1]);
-    share = (energy[0] + energy[1] - s->energy) / (16 * size);
-    if (!(size > 0) || pl_not_finite(&share, 1)) {
-        return;
-    }
-    for (i = PL_STATES / 2; i < PL_STATES; i++) {
-        y[i] = pl_accumulate(y[i], -share * y[i], 0, &low[i]);
-    }
+	real energy[2], size, share;
+	int i;
+	PL(energies)(s, y, energy);
+	size = 2 * energy[0] + pl_magnitude(energy[1]);
+	share = (energy[0] + energy[1] - s->energy) / (16 * size);
+	if (!(size > 0) || pl_not_finite(&share, 1)) {
+		return;
+	}
+	for (i = PL_STATES / 2; i < PL_STATES; i++) {
+		y[i] = pl_accumulate(y[i], -share * y[i], 0, &low[i]);
+	}
 }
 #endif
 
@@ -34,25 +34,25 @@ static inline void PL(hold_energy)(const PL_TYPE *s, real y[PL_STATES], real low
 /* 0; PL_SINGULAR_MASS where none of its corrections is finite, and the state stays as it was */
 static PL_APART int PL(put_back)(const PL_TYPE *s, real tau, real y[PL_STATES], real low[PL_STATES])
 {
-    real miss[PL_STATES];
-    int i, pass;
-    for (pass = 0; pass < PL_PASSES; pass++) {
-        PL(misses)(s, tau, y, miss);
-        if (pl_not_finite(miss, PL_STATES)) {
-            return PL_SINGULAR_MASS;
-        }
-        for (i = 0; i < PL_STATES; i++) {
-            y[i] = pl_accumulate(y[i], -miss[i], 0, &low[i]);
-        }
-    }
-    return 0;
+	real miss[PL_STATES];
+	int i, pass;
+	for (pass = 0; pass < PL_PASSES; pass++) {
+		PL(misses)(s, tau, y, miss);
+		if (pl_not_finite(miss, PL_STATES)) {
+			return PL_SINGULAR_MASS;
+		}
+		for (i = 0; i < PL_STATES; i++) {
+			y[i] = pl_accumulate(y[i], -miss[i], 0, &low[i]);
+		}
+	}
+	return 0;
 }
 
 /* The same where no low parts are kept */
 static inline int PL(project_rounded)(const PL_TYPE *s, real tau, real y[PL_STATES])
 {
-    real low[PL_STATES] = {0};
-    return PL(put_back)(s, tau, y, low);
+	real low[PL_STATES] = {0};
+	return PL(put_back)(s, tau, y, low);
 }
 #define PL_PUT_BACK(s, tau, y) (void)PL(project_rounded)(s, tau, y)
 #else
@@ -64,15 +64,15 @@ static inline int PL(project_rounded)(const PL_TYPE *s, real tau, real y[PL_STAT
 static inline int PL(project)(const PL_TYPE *s, real tau, real y[PL_STATES], real low[PL_STATES])
 {
 #if PL_CONSTRAINTS
-    const int wrong = PL(put_back)(s, tau, y, low);
+	const int wrong = PL(put_back)(s, tau, y, low);
 #else
-    const int wrong = 0;
-    (void)tau;
+	const int wrong = 0;
+	(void)tau;
 #endif
 #if PL_CONSERVES
-    PL(hold_energy)(s, y, low);
+	PL(hold_energy)(s, y, low);
 #endif
-    return wrong;
+	return wrong;
 }
 #endif
 

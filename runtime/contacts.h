@@ -44,9 +44,9 @@ enum { MOST_AT_ONCE = 1000, SOME = 100, MOST_SWEEPS = 1000, LAST = 6 };
 
 /* A switching function at rest, or next to where it would be with no velocity */
 typedef struct resting {
-    int expression, held; /* the interval in which it is held */
-    int impact;           /* whose contact rests there; -1: friction sticks */
-    int hold;             /* which of them that is, for the file's own use */
+	int expression, held; /* the interval in which it is held */
+	int impact;           /* whose contact rests there; -1: friction sticks */
+	int hold;             /* which of them that is, for the file's own use */
 } resting;
 
 /* ---- what the law asks of the file that includes it ---- */
@@ -121,59 +121,59 @@ static void stop(const contacts *m, instant *at, int k);
 /* Before the first impact of a step */
 static inline pl_chain no_impact(real h)
 {
-    pl_chain chain;
-    chain.last = -h;
-    chain.most = chain.least = 0;
-    chain.acting = 0;
-    chain.close = chain.impacts = chain.ended = chain.all = chain.full = 0;
-    return chain;
+	pl_chain chain;
+	chain.last = -h;
+	chain.most = chain.least = 0;
+	chain.acting = 0;
+	chain.close = chain.impacts = chain.ended = chain.all = chain.full = 0;
+	return chain;
 }
 
 static void go_on(pl_chain *chain, real time, real span)
 {
-    if (time - chain->last > span) {
-        chain->most = 0;
-        chain->close = 0;
-    }
-    if (time > chain->last) {
-        chain->impacts = chain->ended = 0;
-        chain->acting = 0;
-    }
-    chain->last = time;
+	if (time - chain->last > span) {
+		chain->most = 0;
+		chain->close = 0;
+	}
+	if (time > chain->last) {
+		chain->impacts = chain->ended = 0;
+		chain->acting = 0;
+	}
+	chain->last = time;
 }
 
 /* One more event; 0: there have been too many in this step. */
 static int has_time(const contacts *m, pl_chain *chain)
 {
-    chain->full = ++chain->all > m->most;
-    return !chain->full;
+	chain->full = ++chain->all > m->most;
+	return !chain->full;
 }
 
 /* One more impact, number k.  Whether it is listed: the list has the first ones of an instant and, once it is half
  * full, of no time to speak of. */
 static int is_listed(pl_chain *chain, int k, int count, int most)
 {
-    if (chain->impacts % (SOME / 2) == 0 && chain->ended == 0) {
-        chain->acting = 0;
-    }
-    chain->acting |= (uint32_t)1 << k;
-    chain->impacts++;
-    chain->close++;
-    return chain->impacts <= LISTED_AT_ONCE && !(2 * count > most && chain->close > LISTED_AT_ONCE);
+	if (chain->impacts % (SOME / 2) == 0 && chain->ended == 0) {
+		chain->acting = 0;
+	}
+	chain->acting |= (uint32_t)1 << k;
+	chain->impacts++;
+	chain->close++;
+	return chain->impacts <= LISTED_AT_ONCE && !(2 * count > most && chain->close > LISTED_AT_ONCE);
 }
 
 /* Whether there is room for one more impact */
 static int has_room(const contacts *m, instant *at, int k)
 {
-    pl_chain *chain = &at->chain;
-    if (is_listed(chain, k, listed(at), m->max_events)) {
-        chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, m->impact[k].expression,
-                                  m->impact[k].breakpoint, m->impact[k].upward);
-    }
-    if (!chain->full && !has_time(m, chain)) {
-        say(at, PL_TOO_MANY_EVENTS);
-    }
-    return !chain->full;
+	pl_chain *chain = &at->chain;
+	if (is_listed(chain, k, listed(at), m->max_events)) {
+		chain->full = !has_listed(m, at, m->impact[k].restitution < 1, chain->last, m->impact[k].expression,
+								  m->impact[k].breakpoint, m->impact[k].upward);
+	}
+	if (!chain->full && !has_time(m, chain)) {
+		say(at, PL_TOO_MANY_EVENTS);
+	}
+	return !chain->full;
 }
 
 /* ---- places ---- */
@@ -181,35 +181,35 @@ static int has_room(const contacts *m, instant *at, int k)
 /* The interval before the guard of a bounce */
 static int free_of(const contacts *m, int k)
 {
-    return rest_of(m, k) + (m->impact[k].upward ? -1 : 1);
+	return rest_of(m, k) + (m->impact[k].upward ? -1 : 1);
 }
 
 static int rests(const contacts *m, const instant *at, int k)
 {
-    return interval_of(m, at, m->impact[k].expression) == rest_of(m, k);
+	return interval_of(m, at, m->impact[k].expression) == rest_of(m, k);
 }
 
 /* Whether a bounce flies before its guard, or rests */
 static int is_before(const contacts *m, const instant *at, int k)
 {
-    const int rest = rest_of(m, k), interval = rest < 0 ? -1 : interval_of(m, at, m->impact[k].expression);
-    return rest >= 0 && (interval == rest || interval == free_of(m, k));
+	const int rest = rest_of(m, k), interval = rest < 0 ? -1 : interval_of(m, at, m->impact[k].expression);
+	return rest >= 0 && (interval == rest || interval == free_of(m, k));
 }
 
 /* Whether a bounce is on its guard, but for so much at least, flying or at rest, or where rounding has taken it */
 static int touches_by(const contacts *m, const instant *at, int k, real least)
 {
-    real noise, beyond_it;
-    if (!is_before(m, at, k)) {
-        return 0;
-    }
-    beyond_it = depth(m, at, k, &noise);
-    return beyond_it >= -larger(noise, least);
+	real noise, beyond_it;
+	if (!is_before(m, at, k)) {
+		return 0;
+	}
+	beyond_it = depth(m, at, k, &noise);
+	return beyond_it >= -larger(noise, least);
 }
 
 static int touches(const contacts *m, const instant *at, int k)
 {
-    return touches_by(m, at, k, 0);
+	return touches_by(m, at, k, 0);
 }
 
 #ifdef ROUNDS
@@ -217,50 +217,50 @@ static int touches(const contacts *m, const instant *at, int k)
  * lie still have places and speeds of the size of rounding, which say nothing of how it came about. */
 static real rounding_of_places(const contacts *m, const instant *at)
 {
-    real largest = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        real noise;
-        if (rest_of(m, k) >= 0) {
-            (void)depth(m, at, k, &noise);
-            largest = larger(largest, noise + m->h * noise_of(speed_terms(m, at, k, m->h)));
-        }
-    }
-    return largest;
+	real largest = 0;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		real noise;
+		if (rest_of(m, k) >= 0) {
+			(void)depth(m, at, k, &noise);
+			largest = larger(largest, noise + m->h * noise_of(speed_terms(m, at, k, m->h)));
+		}
+	}
+	return largest;
 }
 #endif
 
 /* Whether a bounce stops a switching function that would go this way */
 static int is_stopped(const contacts *m, const instant *at, int expression, int way)
 {
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if (m->impact[k].expression == expression && m->impact[k].upward == (way > 0) && is_before(m, at, k)) {
-            return 1;
-        }
-    }
-    return 0;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		if (m->impact[k].expression == expression && m->impact[k].upward == (way > 0) && is_before(m, at, k)) {
+			return 1;
+		}
+	}
+	return 0;
 }
 
 /* How long it flies that leaves the guard of k, from how it is pressed back there [unit]; -1: for good */
 static real flight(const contacts *m, const instant *at, int k)
 {
-    const real speed = rest_of(m, k) < 0 ? 1 : speed_of(m, at, k), press = speed > 0 ? 0 : press_of(m, at, k);
-    return press > 0 ? -2 * speed / press : -1;
+	const real speed = rest_of(m, k) < 0 ? 1 : speed_of(m, at, k), press = speed > 0 ? 0 : press_of(m, at, k);
+	return press > 0 ? -2 * speed / press : -1;
 }
 
 /* A length [unit] not much longer than the shortest flight that begins there */
 static inline real shortened(const contacts *m, const instant *at, real length)
 {
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const int flies = speed_of(m, at, k) < 0 && touches(m, at, k) && !rests(m, at, k);
-        const real along = flies ? flight(m, at, k) : 0;
-        if (along > 0) {
-            length = smaller(length, 2 * along);
-        }
-    }
-    return length;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		const int flies = speed_of(m, at, k) < 0 && touches(m, at, k) && !rests(m, at, k);
+		const real along = flies ? flight(m, at, k) : 0;
+		if (along > 0) {
+			length = smaller(length, 2 * along);
+		}
+	}
+	return length;
 }
 
 /* ---- contacts that come to rest ---- */
@@ -268,41 +268,41 @@ static inline real shortened(const contacts *m, const instant *at, real length)
 /* Into the intervals in which those of a set rest, as far as they all can.  Returns those that do now. */
 static uint32_t seat(const contacts *m, instant *at, uint32_t set)
 {
-    uint32_t laid = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const int expression = m->impact[k].expression, before = interval_of(m, at, expression);
-        if (!(set >> k & 1) || rests(m, at, k)) {
-            continue;
-        }
-        go_to(m, at, expression, rest_of(m, k));
-        if (can_be(m, at)) {
-            laid |= (uint32_t)1 << k;
-        } else {
-            go_to(m, at, expression, before); /* others hold it already */
-        }
-    }
-    renew(m, at);
-    return laid;
+	uint32_t laid = 0;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		const int expression = m->impact[k].expression, before = interval_of(m, at, expression);
+		if (!(set >> k & 1) || rests(m, at, k)) {
+			continue;
+		}
+		go_to(m, at, expression, rest_of(m, k));
+		if (can_be(m, at)) {
+			laid |= (uint32_t)1 << k;
+		} else {
+			go_to(m, at, expression, before); /* others hold it already */
+		}
+	}
+	renew(m, at);
+	return laid;
 }
 
 #ifndef RESTING
 static void stop_all(const contacts *m, instant *at, uint32_t set)
 {
-    real slow = 0;
-    int k, sweeps, moving = 1;
-    for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
-        real fastest = 0;
-        for (k = 0; k < m->impacts; k++) {
-            if (set >> k & 1) {
-                fastest = larger(fastest, magnitude(speed_of(m, at, k)));
-                stop(m, at, k);
-                put_on(m, at, k);
-            }
-        }
-        slow = sweeps == 0 ? CALM * CALM * fastest : slow;
-        moving = fastest > slow;
-    }
+	real slow = 0;
+	int k, sweeps, moving = 1;
+	for (sweeps = 0; sweeps < MOST_SWEEPS && moving; sweeps++) {
+		real fastest = 0;
+		for (k = 0; k < m->impacts; k++) {
+			if (set >> k & 1) {
+				fastest = larger(fastest, magnitude(speed_of(m, at, k)));
+				stop(m, at, k);
+				put_on(m, at, k);
+			}
+		}
+		slow = sweeps == 0 ? CALM * CALM * fastest : slow;
+		moving = fastest > slow;
+	}
 }
 #endif
 
@@ -310,110 +310,112 @@ static void stop_all(const contacts *m, instant *at, uint32_t set)
  * time. */
 static void lay_down(const contacts *m, instant *at, uint32_t set, real time)
 {
-    uint32_t laid;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        set |= (uint32_t)(rest_of(m, k) >= 0 && rests(m, at, k)) << k;
-    }
-    stop_all(m, at, set);
-    laid = seat(m, at, set);
-    keep(m, at);
-    for (k = 0; k < m->impacts; k++) {
-        if (laid >> k & 1) {
-            count_rest(at);
-            (void)has_listed(m, at, 1, time, m->impact[k].expression, m->impact[k].breakpoint, m->impact[k].upward);
-        }
-    }
+	uint32_t laid;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		set |= (uint32_t)(rest_of(m, k) >= 0 && rests(m, at, k)) << k;
+	}
+	stop_all(m, at, set);
+	laid = seat(m, at, set);
+	keep(m, at);
+	for (k = 0; k < m->impacts; k++) {
+		if (laid >> k & 1) {
+			count_rest(at);
+			(void)has_listed(m, at, 1, time, m->impact[k].expression, m->impact[k].breakpoint,
+					m->impact[k].upward);
+		}
+	}
 }
 
 /* Impacts without an end become slower and slower: what has met and has at most the speed `slow` rests together. */
 static void calm(const contacts *m, instant *at, real slow, uint32_t met)
 {
-    uint32_t set = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if (met >> k & 1 && magnitude(speed_of(m, at, k)) <= slow && !rests(m, at, k)) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    lay_down(m, at, set, at->chain.last);
+	uint32_t set = 0;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		if (met >> k & 1 && magnitude(speed_of(m, at, k)) <= slow && !rests(m, at, k)) {
+			set |= (uint32_t)1 << k;
+		}
+	}
+	lay_down(m, at, set, at->chain.last);
 }
 
 /* Where impacts go on and on, those that act and lose speed come to rest, and so does what they press against: but for
  * what has been parted for good.  0: nothing does. */
 static int give_up(const contacts *m, instant *at, uint32_t met)
 {
-    uint32_t set = 0;
-    real fastest = 0;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        fastest = met >> k & 1 ? larger(fastest, speed_of(m, at, k)) : fastest;
-    }
-    for (k = 0; k < m->impacts; k++) {
-        const real speed = met >> k & 1 && m->impact[k].restitution < 1 ? speed_of(m, at, k) : -16 * fastest;
-        if (speed > 0 || (at->chain.acting >> k & 1 && speed > -16 * fastest)) {
-            set |= (uint32_t)1 << k;
-        }
-    }
-    lay_down(m, at, set, at->chain.last);
-    at->chain.impacts = MOST_AT_ONCE - SOME;
-    at->chain.ended++;
-    return set != 0;
+	uint32_t set = 0;
+	real fastest = 0;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		fastest = met >> k & 1 ? larger(fastest, speed_of(m, at, k)) : fastest;
+	}
+	for (k = 0; k < m->impacts; k++) {
+		const real speed = met >> k & 1 && m->impact[k].restitution < 1 ? speed_of(m, at, k) : -16 * fastest;
+		if (speed > 0 || (at->chain.acting >> k & 1 && speed > -16 * fastest)) {
+			set |= (uint32_t)1 << k;
+		}
+	}
+	lay_down(m, at, set, at->chain.last);
+	at->chain.impacts = MOST_AT_ONCE - SOME;
+	at->chain.ended++;
+	return set != 0;
 }
 
 /* All impacts at this instant; begins: the one whose guard was met, or -1.  Returns those that acted, as bits.  What
  * has met once stays together: what rounding makes of that while speeds go to 0 has no size to be held against. */
 static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
 {
-    pl_chain *chain = &at->chain;
-    uint32_t acted = 0, met = 0;
-    real slow = -1;
-    int k, calms = 0;
-    go_on(chain, at->time, SPAN * m->h);
-    for (k = 0; k < m->impacts && !chain->full; k++) {
-        real speed = 0;
-        if (met >> k & 1 || touches(m, at, k)) {
-            met |= (uint32_t)1 << k;
-            speed = speed_of_met(m, at, k);
-        }
-        if (k != begins && !(speed > 0)) {
-            continue;
-        }
-        slow = larger(least_speed(m, at, slow), CALM * chain->most);
-        if (speed <= slow && (k != begins || (slow > 0 && rest_of(m, k) >= 0 && !(m->impact[k].restitution < 1)))) {
-            met |= (uint32_t)1 << k;
-            begins = k == begins ? -1 : begins;
-            calms = 1;
-            continue;
-        }
-        chain->most = larger(chain->most, speed);
-        if (chain->impacts == MOST_AT_ONCE) {
-            chain->full = !give_up(m, at, met);
-            say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
-            begins = k = -1;
-            continue;
-        }
-        if (!has_room(m, at, k)) {
-            break;
-        }
-        jump(m, at, k);
-        if (rest_of(m, k) >= 0) {
-            go_to(m, at, m->impact[k].expression, free_of(m, k));
-            put_on(m, at, k);
-            met |= (uint32_t)1 << k;
-        } else {
-            follow(m, at, 1);
-            met = 0;
-        }
-        acted |= (uint32_t)1 << k;
-        begins = k == begins ? -1 : begins;
-        calms = 0;
-        k = -1;
-    }
-    if (calms) {
-        calm(m, at, slow, met);
-    }
-    return acted;
+	pl_chain *chain = &at->chain;
+	uint32_t acted = 0, met = 0;
+	real slow = -1;
+	int k, calms = 0;
+	go_on(chain, at->time, SPAN * m->h);
+	for (k = 0; k < m->impacts && !chain->full; k++) {
+		real speed = 0;
+		if (met >> k & 1 || touches(m, at, k)) {
+			met |= (uint32_t)1 << k;
+			speed = speed_of_met(m, at, k);
+		}
+		if (k != begins && !(speed > 0)) {
+			continue;
+		}
+		slow = larger(least_speed(m, at, slow), CALM * chain->most);
+		if (speed <= slow && (k != begins || (slow > 0 && rest_of(m, k) >= 0
+				&& !(m->impact[k].restitution < 1)))) {
+			met |= (uint32_t)1 << k;
+			begins = k == begins ? -1 : begins;
+			calms = 1;
+			continue;
+		}
+		chain->most = larger(chain->most, speed);
+		if (chain->impacts == MOST_AT_ONCE) {
+			chain->full = !give_up(m, at, met);
+			say(at, chain->full ? PL_TOO_MANY_EVENTS : 0);
+			begins = k = -1;
+			continue;
+		}
+		if (!has_room(m, at, k)) {
+			break;
+		}
+		jump(m, at, k);
+		if (rest_of(m, k) >= 0) {
+			go_to(m, at, m->impact[k].expression, free_of(m, k));
+			put_on(m, at, k);
+			met |= (uint32_t)1 << k;
+		} else {
+			follow(m, at, 1);
+			met = 0;
+		}
+		acted |= (uint32_t)1 << k;
+		begins = k == begins ? -1 : begins;
+		calms = 0;
+		k = -1;
+	}
+	if (calms) {
+		calm(m, at, slow, met);
+	}
+	return acted;
 }
 
 /* ---- what sticks, rests or slips ---- */
@@ -421,33 +423,33 @@ static uint32_t apply_impacts(const contacts *m, instant *at, int begins)
 /* Lists what changes from these intervals to those. */
 static void list_changes(const contacts *m, instant *at, const resting *r, int count, const int *from, const int *to)
 {
-    int i, k;
-    for (i = 0; i < count; i++) {
-        const int up = to[i] > from[i];
-        for (k = from[i]; k != to[i]; k += up ? 1 : -1) {
-            (void)has_listed(m, at, 1, at->time, r[i].expression, k - !up, up);
-        }
-    }
+	int i, k;
+	for (i = 0; i < count; i++) {
+		const int up = to[i] > from[i];
+		for (k = from[i]; k != to[i]; k += up ? 1 : -1) {
+			(void)has_listed(m, at, 1, at->time, r[i].expression, k - !up, up);
+		}
+	}
 }
 
 static void enter_all(const contacts *m, instant *at, const resting *r, int count, const int *interval)
 {
-    int i;
-    for (i = 0; i < count; i++) {
-        go_to(m, at, r[i].expression, interval[i]);
-    }
-    renew(m, at);
+	int i;
+	for (i = 0; i < count; i++) {
+		go_to(m, at, r[i].expression, interval[i]);
+	}
+	renew(m, at);
 }
 
 /* Those at rest in the combination of this number, three ways each: what it costs, by changes and then by what slips */
 static int combine(const resting *r, int count, int number, const int *before, int *interval)
 {
-    int cost = 0, i;
-    for (i = 0; i < count; i++, number /= 3) {
-        interval[i] = r[i].held + number % 3 - 1;
-        cost += (interval[i] != before[i]) * 2 * MOST + (number % 3 != 1);
-    }
-    return cost;
+	int cost = 0, i;
+	for (i = 0; i < count; i++, number /= 3) {
+		interval[i] = r[i].held + number % 3 - 1;
+		cost += (interval[i] != before[i]) * 2 * MOST + (number % 3 != 1);
+	}
+	return cost;
 }
 
 #ifdef RESTING
@@ -462,53 +464,53 @@ static int pivot(const contacts *m, instant *at, const resting *r, int count, in
  * agrees says */
 static int best_of(const contacts *m, instant *at, const resting *r, int count, const int *before, int *next, int *how)
 {
-    int best = -1, least = 0, all = 1, number, i;
-    for (i = 0; i < count; i++) {
-        all *= 3;
-    }
-    for (number = 0; number < all; number++) {
-        int interval[MOST], agreed, cost = combine(r, count, number, before, interval);
-        if (best >= 0 && cost >= least) {
-            continue;
-        }
-        agreed = agrees(m, at, r, count, interval);
-        cost += agreed == 1 ? HANGING : 0;
-        if (agreed != 0 && (best < 0 || cost < least)) {
-            best = number;
-            least = cost;
-            *how = agreed;
-        }
-    }
-    if (best >= 0) {
-        (void)combine(r, count, best, before, next);
-    }
-    return best >= 0;
+	int best = -1, least = 0, all = 1, number, i;
+	for (i = 0; i < count; i++) {
+		all *= 3;
+	}
+	for (number = 0; number < all; number++) {
+		int interval[MOST], agreed, cost = combine(r, count, number, before, interval);
+		if (best >= 0 && cost >= least) {
+			continue;
+		}
+		agreed = agrees(m, at, r, count, interval);
+		cost += agreed == 1 ? HANGING : 0;
+		if (agreed != 0 && (best < 0 || cost < least)) {
+			best = number;
+			least = cost;
+			*how = agreed;
+		}
+	}
+	if (best >= 0) {
+		(void)combine(r, count, best, before, next);
+	}
+	return best >= 0;
 }
 
 /* What is at rest: whether it is held, and where else it goes.  Changes count from where things were before the instant
  * with `turned`, so that what turns round changes once; else from now. */
 static void resolve(const contacts *m, instant *at, int turned)
 {
-    resting r[RESTING];
-    int now[RESTING], before[RESTING], next[RESTING], found, how = 2, i;
-    const int count = find_resting(m, at, r);
-    for (i = 0; i < count; i++) {
-        now[i] = interval_of(m, at, r[i].expression);
-        before[i] = turned ? interval_before(m, at, r[i].expression) : now[i];
-        next[i] = now[i];
-    }
-    if (count == 0 || agrees(m, at, r, count, now) == 2) {
-        return;
-    }
-    found = count <= MOST ? best_of(m, at, r, count, before, next, &how) : pivot(m, at, r, count, next);
-    if (!found) {
-        say(at, PL_UNDECIDED);
-        enter_all(m, at, r, count, now);
-    } else {
-        say(at, how == 1 ? IN_DOUBT : 0);
-        list_changes(m, at, r, count, now, next);
-        enter_all(m, at, r, count, next);
-    }
+	resting r[RESTING];
+	int now[RESTING], before[RESTING], next[RESTING], found, how = 2, i;
+	const int count = find_resting(m, at, r);
+	for (i = 0; i < count; i++) {
+		now[i] = interval_of(m, at, r[i].expression);
+		before[i] = turned ? interval_before(m, at, r[i].expression) : now[i];
+		next[i] = now[i];
+	}
+	if (count == 0 || agrees(m, at, r, count, now) == 2) {
+		return;
+	}
+	found = count <= MOST ? best_of(m, at, r, count, before, next, &how) : pivot(m, at, r, count, next);
+	if (!found) {
+		say(at, PL_UNDECIDED);
+		enter_all(m, at, r, count, now);
+	} else {
+		say(at, how == 1 ? IN_DOUBT : 0);
+		list_changes(m, at, r, count, now, next);
+		enter_all(m, at, r, count, next);
+	}
 }
 
 /* ---- behind impacts ---- */
@@ -517,83 +519,83 @@ static void resolve(const contacts *m, instant *at, int turned)
  * places: they lie on each other, and what that takes one by moves another one. */
 static real most_pressed(const contacts *m, const instant *at, real *rounding)
 {
-    real most = 0, noise;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        if (touches(m, at, k)) {
-            (void)depth(m, at, k, &noise);
-            *rounding = larger(*rounding, noise);
-        }
-    }
-    for (k = 0; k < m->impacts; k++) {
-        if (touches_by(m, at, k, *rounding)) {
-            most = larger(most, press_of(m, at, k));
-        }
-    }
-    return most;
+	real most = 0, noise;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		if (touches(m, at, k)) {
+			(void)depth(m, at, k, &noise);
+			*rounding = larger(*rounding, noise);
+		}
+	}
+	for (k = 0; k < m->impacts; k++) {
+		if (touches_by(m, at, k, *rounding)) {
+			most = larger(most, press_of(m, at, k));
+		}
+	}
+	return most;
 }
 
 /* Several contacts that are as good as at rest together, those of them that fly as bits: all that any of them could
  * still do is over within BRIEF of h under the force that presses one of them, or lower than rounding. */
 static uint32_t near_rest(const contacts *m, const instant *at)
 {
-    real noise = 0, unused;
-    const real brief = TOGETHER * step_of(m), most = most_pressed(m, at, &noise), fastest = most * brief / 2;
-    uint32_t set = 0;
-    int k, together = 0;
-    for (k = 0; k < m->impacts; k++) {
-        const real loss = 1 - m->impact[k].restitution;
-        real speed;
-        if (!is_before(m, at, k) || depth(m, at, k, &unused) < -larger(noise, fastest * brief * unit(m))) {
-            continue;
-        }
-        speed = magnitude(speed_of(m, at, k));
-        if (rests(m, at, k)) {
-            together++;
-        } else if (speed <= fastest * loss || unit(m) * speed * speed <= 2 * most * noise * loss * loss) {
-            set |= (uint32_t)1 << k;
-            together++;
-        }
-    }
-    return together > 1 ? set : 0;
+	real noise = 0, unused;
+	const real brief = TOGETHER * step_of(m), most = most_pressed(m, at, &noise), fastest = most * brief / 2;
+	uint32_t set = 0;
+	int k, together = 0;
+	for (k = 0; k < m->impacts; k++) {
+		const real loss = 1 - m->impact[k].restitution;
+		real speed;
+		if (!is_before(m, at, k) || depth(m, at, k, &unused) < -larger(noise, fastest * brief * unit(m))) {
+			continue;
+		}
+		speed = magnitude(speed_of(m, at, k));
+		if (rests(m, at, k)) {
+			together++;
+		} else if (speed <= fastest * loss || unit(m) * speed * speed <= 2 * most * noise * loss * loss) {
+			set |= (uint32_t)1 << k;
+			together++;
+		}
+	}
+	return together > 1 ? set : 0;
 }
 
 /* Several that pass impacts to each other come to rest together if all of them are pressed then. */
 static void rest_together(const contacts *m, instant *at, uint32_t set)
 {
-    const uint32_t laid = seat(m, at, set);
-    int k, pressed = 1;
-    for (k = 0; k < m->impacts; k++) {
-        pressed = pressed && (!(laid >> k & 1) || is_pressed(m, at, k));
-    }
-    for (k = 0; k < m->impacts; k++) {
-        if (laid >> k & 1) {
-            go_to(m, at, m->impact[k].expression, free_of(m, k));
-        }
-    }
-    renew(m, at);
-    if (pressed) {
-        lay_down(m, at, laid, at->time);
-        resolve(m, at, 0);
-    }
+	const uint32_t laid = seat(m, at, set);
+	int k, pressed = 1;
+	for (k = 0; k < m->impacts; k++) {
+		pressed = pressed && (!(laid >> k & 1) || is_pressed(m, at, k));
+	}
+	for (k = 0; k < m->impacts; k++) {
+		if (laid >> k & 1) {
+			go_to(m, at, m->impact[k].expression, free_of(m, k));
+		}
+	}
+	renew(m, at);
+	if (pressed) {
+		lay_down(m, at, laid, at->time);
+		resolve(m, at, 0);
+	}
 }
 
 /* Behind impacts: which of them rest, after infinitely many more in no time to speak of */
 static void come_to_rest(const contacts *m, instant *at, uint32_t acted)
 {
-    const real brief = (listed(at) > m->max_events - LAST ? SPAN : BRIEF) * step_of(m);
-    uint32_t set;
-    int k;
-    for (k = 0; k < m->impacts; k++) {
-        const real e = m->impact[k].restitution, along = acted >> k & 1 && e < 1 ? flight(m, at, k) : -1;
-        const real left = along / (1 - e);
-        if (left >= 0 && left <= brief && touches(m, at, k)) {
-            lay_down(m, at, (uint32_t)1 << k, at->time + left * unit(m));
-            resolve(m, at, 0);
-        }
-    }
-    set = acted != 0 && m->impacts > 1 ? near_rest(m, at) : 0; /* of one alone it says nothing */
-    if (set != 0) {
-        rest_together(m, at, set);
-    }
+	const real brief = (listed(at) > m->max_events - LAST ? SPAN : BRIEF) * step_of(m);
+	uint32_t set;
+	int k;
+	for (k = 0; k < m->impacts; k++) {
+		const real e = m->impact[k].restitution, along = acted >> k & 1 && e < 1 ? flight(m, at, k) : -1;
+		const real left = along / (1 - e);
+		if (left >= 0 && left <= brief && touches(m, at, k)) {
+			lay_down(m, at, (uint32_t)1 << k, at->time + left * unit(m));
+			resolve(m, at, 0);
+		}
+	}
+	set = acted != 0 && m->impacts > 1 ? near_rest(m, at) : 0; /* of one alone it says nothing */
+	if (set != 0) {
+		rest_together(m, at, set);
+	}
 }

@@ -16,126 +16,126 @@
 /* How many bytes of an instance are in row i: in the last there may be fewer. */
 static size_t PL(row_size)(const PL_TYPE *s, size_t i)
 {
-    const size_t left = sizeof *s - i * sizeof(real);
-    return left < sizeof(real) ? left : sizeof(real);
+	const size_t left = sizeof *s - i * sizeof(real);
+	return left < sizeof(real) ? left : sizeof(real);
 }
 
 void PL(batch_take)(const PL_INSTANCES *b, size_t j, PL_TYPE *s)
 {
-    size_t i;
-    for (i = 0; i < PL_ROWS; i++) {
-        memcpy((char *)s + i * sizeof(real), &b->y[i * b->count + j], PL(row_size)(s, i));
-    }
+	size_t i;
+	for (i = 0; i < PL_ROWS; i++) {
+		memcpy((char *)s + i * sizeof(real), &b->y[i * b->count + j], PL(row_size)(s, i));
+	}
 }
 
 void PL(batch_give)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 {
-    size_t i;
-    for (i = 0; i < PL_ROWS; i++) {
-        memcpy(&b->y[i * b->count + j], (const char *)s + i * sizeof(real), PL(row_size)(s, i));
-    }
+	size_t i;
+	for (i = 0; i < PL_ROWS; i++) {
+		memcpy(&b->y[i * b->count + j], (const char *)s + i * sizeof(real), PL(row_size)(s, i));
+	}
 }
 
 /* Its peaks are what its outputs are now. */
 static void PL(batch_begin)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 {
-    real out[PL_OUTPUTS];
-    size_t i;
-    PL(batch_give)(b, j, s);
-    PL(out)(s, out);
-    for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
-        b->peak[i * b->count + j] = pl_magnitude(out[i]);
-    }
+	real out[PL_OUTPUTS];
+	size_t i;
+	PL(batch_give)(b, j, s);
+	PL(out)(s, out);
+	for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
+		b->peak[i * b->count + j] = pl_magnitude(out[i]);
+	}
 }
 
 void PL(batch_init)(PL_INSTANCES *b)
 {
-    size_t j;
-    PL(init)(&b->shared);
-    for (j = 0; j < b->count; j++) {
-        PL(batch_begin)(b, j, &b->shared);
-    }
+	size_t j;
+	PL(init)(&b->shared);
+	for (j = 0; j < b->count; j++) {
+		PL(batch_begin)(b, j, &b->shared);
+	}
 }
 
 void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
 {
-    PL_TYPE one;
-    PL(batch_take)(b, j, &one);
-    PL(set)(&one, PL(time)(&one), y);
-    PL(batch_begin)(b, j, &one);
+	PL_TYPE one;
+	PL(batch_take)(b, j, &one);
+	PL(set)(&one, PL(time)(&one), y);
+	PL(batch_begin)(b, j, &one);
 }
 
 void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
 {
-    PL_TYPE one;
-    PL(batch_take)(b, j, &one);
-    PL(get)(&one, y);
+	PL_TYPE one;
+	PL(batch_take)(b, j, &one);
+	PL(get)(&one, y);
 }
 
 int PL(batch_status)(const PL_INSTANCES *b, size_t j)
 {
-    PL_TYPE one;
-    PL(batch_take)(b, j, &one);
-    return PL(status)(&one);
+	PL_TYPE one;
+	PL(batch_take)(b, j, &one);
+	return PL(status)(&one);
 }
 
 static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
 {
-    real now[PL_OUTPUTS];
-    size_t i;
-    PL(out)(s, now);
-    for (i = 0; i < PL_OUTPUTS; i++) {
-        const size_t at = i * b->count + j;
-        if (out) {
-            out[at] = now[i];
-        }
-        if (b->peak && pl_magnitude(now[i]) > b->peak[at]) {
-            b->peak[at] = pl_magnitude(now[i]);
-        }
-    }
+	real now[PL_OUTPUTS];
+	size_t i;
+	PL(out)(s, now);
+	for (i = 0; i < PL_OUTPUTS; i++) {
+		const size_t at = i * b->count + j;
+		if (out) {
+			out[at] = now[i];
+		}
+		if (b->peak && pl_magnitude(now[i]) > b->peak[at]) {
+			b->peak[at] = pl_magnitude(now[i]);
+		}
+	}
 }
 
 static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, real *out)
 {
-    PL_TYPE one;
-    PL(batch_take)(b, j, &one);
-    for (; n > 0; n--) {
-        PL(step)(&one PL_GIVEN);
-        u = u ? u + PL_INPUTS : NULL;
-        if (out || b->peak) {
-            PL(batch_report)(b, j, &one, out);
-        }
-        out = out ? out + PL_OUTPUTS * b->count : NULL;
-    }
-    PL(batch_give)(b, j, &one);
+	PL_TYPE one;
+	PL(batch_take)(b, j, &one);
+	for (; n > 0; n--) {
+		PL(step)(&one PL_GIVEN);
+		u = u ? u + PL_INPUTS : NULL;
+		if (out || b->peak) {
+			PL(batch_report)(b, j, &one, out);
+		}
+		out = out ? out + PL_OUTPUTS * b->count : NULL;
+	}
+	PL(batch_give)(b, j, &one);
 }
 
 void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 {
-    size_t j;
-    for (j = 0; j < b->count; j++) {
-        PL(batch_one)(b, j, n, PL_THE_INPUTS, out);
-    }
-    if (b->count > 0) {
-        PL(batch_take)(b, 0, &b->shared);
-    }
+	size_t j;
+	for (j = 0; j < b->count; j++) {
+		PL(batch_one)(b, j, n, PL_THE_INPUTS, out);
+	}
+	if (b->count > 0) {
+		PL(batch_take)(b, 0, &b->shared);
+	}
 }
 
 /* For kernels: what instances share, the inputs */
 void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
 {
-    size_t k;
-    for (k = 0; k < n; k++) {
+	size_t k;
+	for (k = 0; k < n; k++) {
 #if PL_INPUTS > 0
-        now += PL_INPUTS;
-        memcpy(now, u, PL_INPUTS * sizeof *u);
+		now += PL_INPUTS;
+		memcpy(now, u, PL_INPUTS * sizeof *u);
 #endif
-        PL(step)(&b->shared PL_GIVEN);
+		PL(step)(&b->shared PL_GIVEN);
 #if PL_INPUTS > 0
-        u += PL_INPUTS;
+		u += PL_INPUTS;
 #endif
-    }
-    (void)now;
+	}
+	(void)now;
 }
 
 #if PL_PARAMS > 0
@@ -143,73 +143,73 @@ void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
 
 static void PL(many_init)(void *to, size_t count, real *y, real *factors, real *peak)
 {
-    PL_INSTANCES *const b = (PL_INSTANCES *)to;
-    (void)factors;
-    b->count = count;
-    b->y = y;
-    b->peak = peak;
-    PL(batch_init)(b);
+	PL_INSTANCES *const b = (PL_INSTANCES *)to;
+	(void)factors;
+	b->count = count;
+	b->y = y;
+	b->peak = peak;
+	PL(batch_init)(b);
 }
 
 #if PL_RAMPS
 static void PL(many_hold)(void *to, const real *u)
 {
-    PL_INSTANCES *const b = (PL_INSTANCES *)to;
-    size_t j;
-    PL(hold)(&b->shared, u);
-    for (j = 0; j < b->count; j++) {
-        PL_TYPE one;
-        PL(batch_take)(b, j, &one);
-        PL(hold)(&one, u);
-        PL(batch_give)(b, j, &one);
-    }
+	PL_INSTANCES *const b = (PL_INSTANCES *)to;
+	size_t j;
+	PL(hold)(&b->shared, u);
+	for (j = 0; j < b->count; j++) {
+		PL_TYPE one;
+		PL(batch_take)(b, j, &one);
+		PL(hold)(&one, u);
+		PL(batch_give)(b, j, &one);
+	}
 }
 #endif
 
 static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
 {
-    PL_INSTANCES *const b = (PL_INSTANCES *)to;
-    PL(coeffs) c = PL(nominal);
+	PL_INSTANCES *const b = (PL_INSTANCES *)to;
+	PL(coeffs) c = PL(nominal);
 #if PL_TUNED
-    const int status = PL(retune)(&c, params, c.h);
+	const int status = PL(retune)(&c, params, c.h);
 #else
-    const int status = PL(retune)(&c, params, PL_H);
+	const int status = PL(retune)(&c, params, PL_H);
 #endif
-    if (status == 0) {
-        PL_TYPE one;
-        PL(batch_take)(b, j, &one);
-        PL(use)(&one, &c);
-        PL(out)(&one, out);
-        PL(batch_begin)(b, j, &one);
-    }
-    return status;
+	if (status == 0) {
+		PL_TYPE one;
+		PL(batch_take)(b, j, &one);
+		PL(use)(&one, &c);
+		PL(out)(&one, out);
+		PL(batch_begin)(b, j, &one);
+	}
+	return status;
 }
 
 static void PL(many_run)(void *b, size_t n, const real *u, real *out)
 {
-    (void)u;
-    PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
+	(void)u;
+	PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
 }
 
 static int PL(many_status)(const void *b, size_t j)
 {
-    return PL(batch_status)((const PL_INSTANCES *)b, j);
+	return PL(batch_status)((const PL_INSTANCES *)b, j);
 }
 
 static void PL(many_share)(void *b, size_t n, const real *u, real *now)
 {
-    (void)u;
-    PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
+	(void)u;
+	PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
 }
 
 const pl_many PL(many) = {
-    sizeof(PL_INSTANCES), PL_ROWS, 0, PL(many_init),
+	sizeof(PL_INSTANCES), PL_ROWS, 0, PL(many_init),
 #if PL_RAMPS
-    PL(many_hold),
+	PL(many_hold),
 #else
-    NULL,
+	NULL,
 #endif
-    PL(many_retune), PL(many_run), PL(many_status), PL_INPUTS, PL(many_share)
+	PL(many_retune), PL(many_run), PL(many_status), PL_INPUTS, PL(many_share)
 };
 #endif
 

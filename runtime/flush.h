@@ -34,38 +34,38 @@ enum { PL(flush_shift) = 53, PL(flush_least) = 60, PL(flush_beside) = 900, PL(fl
 
 static inline PL_FLUSH_FUNCTION int PL(flush_exponent)(real value)
 {
-    union {
-        real value;
-        PL_FLUSH_BITS bits;
-    } of;
-    of.value = value;
-    return (int)((of.bits << 1) >> PL(flush_shift));
+	union {
+		real value;
+		PL_FLUSH_BITS bits;
+	} of;
+	of.value = value;
+	return (int)((of.bits << 1) >> PL(flush_shift));
 }
 
 static PL_APART PL_FLUSH_FUNCTION void PL(flush)(PL_TYPE *s)
 {
-    int i;
+	int i;
 #if PL_FLUSHES_BESIDE
-    short most[PL_FLUSHES] = {0};
-    for (i = 0; i < PL_STATES; i++) {
-        const int exponent = PL(flush_exponent)(s->y[i]);
-        short *const of_part = &most[PL_FLUSH_PART(i)];
-        *of_part = exponent > *of_part ? (short)exponent : *of_part;
-    }
+	short most[PL_FLUSHES] = {0};
+	for (i = 0; i < PL_STATES; i++) {
+		const int exponent = PL(flush_exponent)(s->y[i]);
+		short *const of_part = &most[PL_FLUSH_PART(i)];
+		*of_part = exponent > *of_part ? (short)exponent : *of_part;
+	}
 #endif
-    for (i = 0; i < PL_STATES; i++) {
-        int least = PL_FLUSH_PART(i) < PL_DECAYING ? PL(flush_least) : 0;
+	for (i = 0; i < PL_STATES; i++) {
+		int least = PL_FLUSH_PART(i) < PL_DECAYING ? PL(flush_least) : 0;
 #if PL_FLUSHES_BESIDE
-        const int small = most[PL_FLUSH_PART(i)] - PL(flush_beside);
-        least = small > least && small < PL(flush_one) ? small : least;
+		const int small = most[PL_FLUSH_PART(i)] - PL(flush_beside);
+		least = small > least && small < PL(flush_one) ? small : least;
 #endif
-        if (PL(flush_exponent)(s->y[i]) < least) {
-            s->y[i] = 0;
+		if (PL(flush_exponent)(s->y[i]) < least) {
+			s->y[i] = 0;
 #if PL_COMPENSATED
-            s->low[i] = 0;
+			s->low[i] = 0;
 #endif
-        }
-    }
+		}
+	}
 }
 
 #undef PL_FLUSH_BITS

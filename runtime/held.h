@@ -18,17 +18,17 @@ static int PL(retune_all)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 #endif
 {
-    int i;
-    if (h != PL_H) {
-        return PL_NO_STEP;
-    }
-    if (pl_not_finite(params, PL_PARAMS)) {
-        return PL_NOT_FINITE;
-    }
-    for (i = 0; i < PL_PARAMS; i++) {
-        c->params[i] = params[i];
-    }
-    return 0;
+	int i;
+	if (h != PL_H) {
+		return PL_NO_STEP;
+	}
+	if (pl_not_finite(params, PL_PARAMS)) {
+		return PL_NOT_FINITE;
+	}
+	for (i = 0; i < PL_PARAMS; i++) {
+		c->params[i] = params[i];
+	}
+	return 0;
 }
 #endif
 
@@ -36,26 +36,26 @@ int PL(retune)(PL(coeffs) *c, const real params[PL_PARAMS], real h)
 void PL(use)(PL_TYPE *s, const PL(coeffs) *c)
 {
 #if PL_LEADS > 0
-    const real t = PL(time)(s);
-    real before[PL_LEADS], after[PL_LEADS];
-    int i;
-    PL(frequencies)(s, before);
-    s->coeffs = *c;
-    PL(frequencies)(s, after);
-    for (i = 0; i < PL_LEADS; i++) {
-        pl_lead_change(&s->lead[i], before[i], after[i], t);
-    }
+	const real t = PL(time)(s);
+	real before[PL_LEADS], after[PL_LEADS];
+	int i;
+	PL(frequencies)(s, before);
+	s->coeffs = *c;
+	PL(frequencies)(s, after);
+	for (i = 0; i < PL_LEADS; i++) {
+		pl_lead_change(&s->lead[i], before[i], after[i], t);
+	}
 #else
-    s->coeffs = *c;
+	s->coeffs = *c;
 #endif
 #if PL_MODES > 0
-    if (s->k > 0u) { /* s->y is the state that was set */
-        PL(of_modes)(s->which, s->eta, s->y);
-        PL(of_modes)(s->which, s->rate, s->y + PL_MODES);
-    }
+	if (s->k > 0u) { /* s->y is the state that was set */
+		PL(of_modes)(s->which, s->eta, s->y);
+		PL(of_modes)(s->which, s->rate, s->y + PL_MODES);
+	}
 #endif
 #if PL_PLACES
-    PL(place)(s);
+	PL(place)(s);
 #endif
 }
 

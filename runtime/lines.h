@@ -23,32 +23,32 @@
 /* a[1] b[k-1] + ... + a[k-1] b[1] */
 static real PL(inner)(const real *a, const real *b, int k)
 {
-    real sum[2] = {0, 0};
-    int i = k / 2, j = k - i;
-    if (i == j && i > 0) { /* in the middle, the first of the first chain */
-        sum[0] = PL_PAIR(a, i, b, i);
-        i--;
-        j++;
-        if (k <= 4) { /* at most four terms: one chain */
-            return i > 0 ? sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i) : sum[0];
-        }
-        for (; i > 0; i--, j++) {
-            sum[1] += PL_PAIR(a, i, b, j);
-            sum[0] += PL_PAIR(a, j, b, i);
-        }
-        return sum[0] + sum[1];
-    }
-    if (k <= 5) {
-        for (; i > 0; i--, j++) {
-            sum[0] = sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i);
-        }
-        return sum[0];
-    }
-    for (; i > 0; i--, j++) {
-        sum[0] += PL_PAIR(a, i, b, j);
-        sum[1] += PL_PAIR(a, j, b, i);
-    }
-    return sum[0] + sum[1];
+	real sum[2] = {0, 0};
+	int i = k / 2, j = k - i;
+	if (i == j && i > 0) { /* in the middle, the first of the first chain */
+		sum[0] = PL_PAIR(a, i, b, i);
+		i--;
+		j++;
+		if (k <= 4) { /* at most four terms: one chain */
+			return i > 0 ? sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i) : sum[0];
+		}
+		for (; i > 0; i--, j++) {
+			sum[1] += PL_PAIR(a, i, b, j);
+			sum[0] += PL_PAIR(a, j, b, i);
+		}
+		return sum[0] + sum[1];
+	}
+	if (k <= 5) {
+		for (; i > 0; i--, j++) {
+			sum[0] = sum[0] + PL_PAIR(a, i, b, j) + PL_PAIR(a, j, b, i);
+		}
+		return sum[0];
+	}
+	for (; i > 0; i--, j++) {
+		sum[0] += PL_PAIR(a, i, b, j);
+		sum[1] += PL_PAIR(a, j, b, i);
+	}
+	return sum[0] + sum[1];
 }
 #endif
 
@@ -56,19 +56,19 @@ static real PL(inner)(const real *a, const real *b, int k)
 /* The same of a and a: each pair once, twice over */
 static real PL(inner_square)(const real *a, int k)
 {
-    real sum[2] = {0, 0};
-    int i = (k - 1) / 2, j = k - i;
-    if (i <= 4) {
-        for (; i > 0; i--, j++) {
-            sum[0] += PL_PAIR(a, i, a, j);
-        }
-    }
-    for (; i > 0; i -= 2, j += 2) {
-        sum[0] += PL_PAIR(a, i, a, j);
-        sum[1] += i > 1 ? PL_PAIR(a, i - 1, a, j + 1) : 0;
-    }
-    sum[0] = 2 * (sum[0] + sum[1]);
-    return k % 2 ? sum[0] : PL_PAIR(a, k / 2, a, k / 2) + sum[0];
+	real sum[2] = {0, 0};
+	int i = (k - 1) / 2, j = k - i;
+	if (i <= 4) {
+		for (; i > 0; i--, j++) {
+			sum[0] += PL_PAIR(a, i, a, j);
+		}
+	}
+	for (; i > 0; i -= 2, j += 2) {
+		sum[0] += PL_PAIR(a, i, a, j);
+		sum[1] += i > 1 ? PL_PAIR(a, i - 1, a, j + 1) : 0;
+	}
+	sum[0] = 2 * (sum[0] + sum[1]);
+	return k % 2 ? sum[0] : PL_PAIR(a, k / 2, a, k / 2) + sum[0];
 }
 #endif
 
@@ -76,13 +76,13 @@ static real PL(inner_square)(const real *a, int k)
 /* c[1] b[k-1] + ... + c[k-1] b[1] */
 static real PL(inner_of_quotient)(const real *c, const real *b, int k)
 {
-    real sum[2] = {0, 0};
-    int j;
-    for (j = 1; j + 1 < k; j += 2) {
-        sum[0] += PL_PAIR(c, j, b, k - j);
-        sum[1] += PL_PAIR(c, j + 1, b, k - j - 1);
-    }
-    return sum[0] + sum[1] + (j < k ? PL_PAIR(c, j, b, k - j) : 0);
+	real sum[2] = {0, 0};
+	int j;
+	for (j = 1; j + 1 < k; j += 2) {
+		sum[0] += PL_PAIR(c, j, b, k - j);
+		sum[1] += PL_PAIR(c, j + 1, b, k - j - 1);
+	}
+	return sum[0] + sum[1] + (j < k ? PL_PAIR(c, j, b, k - j) : 0);
 }
 #endif
 
@@ -90,12 +90,12 @@ static real PL(inner_of_quotient)(const real *c, const real *b, int k)
 /* The sum over 0 < j < k of (e (k - j) - j)/k a[k-j] c[j]: c is a^e */
 static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
 {
-    real sum = 0;
-    int j;
-    for (j = 1; j < k; j++) {
-        sum += (e * (real)(k - j) - (real)j) / (real)k * PL_PAIR(a, k - j, c, j);
-    }
-    return sum;
+	real sum = 0;
+	int j;
+	for (j = 1; j < k; j++) {
+		sum += (e * (real)(k - j) - (real)j) / (real)k * PL_PAIR(a, k - j, c, j);
+	}
+	return sum;
 }
 #endif
 
@@ -108,104 +108,104 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
 
 PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, int k, real *to, const size_t groups)
 {
-    const real *const one = k > 5 && k % 2 == 0 ? b : a, *const other = one == a ? b : a; /* the first chain's */
-    pl_lanes sum[4], more[4];
-    int i = k / 2, j = k - i;
-    size_t g;
-    PL_LANES_UNROLL
-    for (g = 0; g < groups; g++) {
-        sum[g] = more[g] = pl_lanes_all(0);
-        if (i == j && i > 0) {
-            sum[g] = PL_LANES_PAIR(a, i, b, i, g);
-        }
-    }
-    i -= i == j;
-    for (j = k - i; i > 0 && k <= 5; i--, j++) {
-        PL_LANES_UNROLL
-        for (g = 0; g < groups; g++) {
-            sum[g] = sum[g] + PL_LANES_PAIR(a, i, b, j, g) + PL_LANES_PAIR(a, j, b, i, g);
-        }
-    }
-    for (; i > 0; i--, j++) {
-        PL_LANES_UNROLL
-        for (g = 0; g < groups; g++) {
-            sum[g] = sum[g] + PL_LANES_PAIR(one, i, other, j, g);
-            more[g] = more[g] + PL_LANES_PAIR(one, j, other, i, g);
-        }
-    }
-    PL_LANES_UNROLL
-    for (g = 0; g < groups; g++) {
-        pl_lanes_store(to + g * PL_AT_ONCE, k > 5 ? sum[g] + more[g] : sum[g], PL_AT_ONCE);
-    }
+	const real *const one = k > 5 && k % 2 == 0 ? b : a, *const other = one == a ? b : a; /* the first chain's */
+	pl_lanes sum[4], more[4];
+	int i = k / 2, j = k - i;
+	size_t g;
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		sum[g] = more[g] = pl_lanes_all(0);
+		if (i == j && i > 0) {
+			sum[g] = PL_LANES_PAIR(a, i, b, i, g);
+		}
+	}
+	i -= i == j;
+	for (j = k - i; i > 0 && k <= 5; i--, j++) {
+		PL_LANES_UNROLL
+		for (g = 0; g < groups; g++) {
+			sum[g] = sum[g] + PL_LANES_PAIR(a, i, b, j, g) + PL_LANES_PAIR(a, j, b, i, g);
+		}
+	}
+	for (; i > 0; i--, j++) {
+		PL_LANES_UNROLL
+		for (g = 0; g < groups; g++) {
+			sum[g] = sum[g] + PL_LANES_PAIR(one, i, other, j, g);
+			more[g] = more[g] + PL_LANES_PAIR(one, j, other, i, g);
+		}
+	}
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		pl_lanes_store(to + g * PL_AT_ONCE, k > 5 ? sum[g] + more[g] : sum[g], PL_AT_ONCE);
+	}
 }
 
 PL_LANES_INLINE void PL(inner_square_lanes)(const real *a, int k, real *to, const size_t groups)
 {
-    pl_lanes sum[4], more[4];
-    int i = (k - 1) / 2, j = k - i;
-    size_t g;
-    PL_LANES_UNROLL
-    for (g = 0; g < groups; g++) {
-        sum[g] = more[g] = pl_lanes_all(0);
-    }
-    if (i > 4) {
-        for (; i > 1; i -= 2, j += 2) {
-            PL_LANES_UNROLL
-            for (g = 0; g < groups; g++) {
-                sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
-                more[g] = more[g] + PL_LANES_PAIR(a, i - 1, a, j + 1, g);
-            }
-        }
-    }
-    for (; i > 0; i--, j++) {
-        PL_LANES_UNROLL
-        for (g = 0; g < groups; g++) {
-            sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
-        }
-    }
-    PL_LANES_UNROLL
-    for (g = 0; g < groups; g++) {
-        sum[g] = 2 * (sum[g] + more[g]);
-        if (k % 2 == 0) {
-            sum[g] = PL_LANES_PAIR(a, k / 2, a, k / 2, g) + sum[g];
-        }
-        pl_lanes_store(to + g * PL_AT_ONCE, sum[g], PL_AT_ONCE);
-    }
+	pl_lanes sum[4], more[4];
+	int i = (k - 1) / 2, j = k - i;
+	size_t g;
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		sum[g] = more[g] = pl_lanes_all(0);
+	}
+	if (i > 4) {
+		for (; i > 1; i -= 2, j += 2) {
+			PL_LANES_UNROLL
+			for (g = 0; g < groups; g++) {
+				sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
+				more[g] = more[g] + PL_LANES_PAIR(a, i - 1, a, j + 1, g);
+			}
+		}
+	}
+	for (; i > 0; i--, j++) {
+		PL_LANES_UNROLL
+		for (g = 0; g < groups; g++) {
+			sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
+		}
+	}
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		sum[g] = 2 * (sum[g] + more[g]);
+		if (k % 2 == 0) {
+			sum[g] = PL_LANES_PAIR(a, k / 2, a, k / 2, g) + sum[g];
+		}
+		pl_lanes_store(to + g * PL_AT_ONCE, sum[g], PL_AT_ONCE);
+	}
 }
 
 /* Of one run; what does not fill lanes is made again with some before, or by itself */
 static void PL(inners_of_run)(const real *a, const real *b, int k, size_t count, real *to)
 {
-    size_t done = 0, at;
-    for (; done + PL_AT_ONCE < count && count >= 4 * PL_AT_ONCE; done += 4 * PL_AT_ONCE) {
-        at = count - done < 4 * PL_AT_ONCE ? count - 4 * PL_AT_ONCE : done;
-        if (a == b) {
-            PL(inner_square_lanes)(a + at, k, to + at, 4);
-        } else {
-            PL(inner_lanes)(a + at, b + at, k, to + at, 4);
-        }
-    }
-    for (; done < count && count >= PL_AT_ONCE; done += PL_AT_ONCE) {
-        at = count - done < PL_AT_ONCE ? count - PL_AT_ONCE : done;
-        if (a == b) {
-            PL(inner_square_lanes)(a + at, k, to + at, 1);
-        } else {
-            PL(inner_lanes)(a + at, b + at, k, to + at, 1);
-        }
-    }
-    for (; done < count; done++) {
-        to[done] = a == b ? PL(inner_square)(a + done, k) : PL(inner)(a + done, b + done, k);
-    }
+	size_t done = 0, at;
+	for (; done + PL_AT_ONCE < count && count >= 4 * PL_AT_ONCE; done += 4 * PL_AT_ONCE) {
+		at = count - done < 4 * PL_AT_ONCE ? count - 4 * PL_AT_ONCE : done;
+		if (a == b) {
+			PL(inner_square_lanes)(a + at, k, to + at, 4);
+		} else {
+			PL(inner_lanes)(a + at, b + at, k, to + at, 4);
+		}
+	}
+	for (; done < count && count >= PL_AT_ONCE; done += PL_AT_ONCE) {
+		at = count - done < PL_AT_ONCE ? count - PL_AT_ONCE : done;
+		if (a == b) {
+			PL(inner_square_lanes)(a + at, k, to + at, 1);
+		} else {
+			PL(inner_lanes)(a + at, b + at, k, to + at, 1);
+		}
+	}
+	for (; done < count; done++) {
+		to[done] = a == b ? PL(inner_square)(a + done, k) : PL(inner)(a + done, b + done, k);
+	}
 }
 
 static void PL(inners_of_turn)(const real *table, int k, real *to)
 {
-    int i;
-    for (i = 0; i < 4 * PL_RUNS; i += 4) {
-        const size_t count = (size_t)PL(alike)[i + 3];
-        PL(inners_of_run)(table + PL(alike)[i], table + PL(alike)[i + 1], k + PL(alike)[i + 2], count, to);
-        to += count;
-    }
+	int i;
+	for (i = 0; i < 4 * PL_RUNS; i += 4) {
+		const size_t count = (size_t)PL(alike)[i + 3];
+		PL(inners_of_run)(table + PL(alike)[i], table + PL(alike)[i + 1], k + PL(alike)[i + 2], count, to);
+		to += count;
+	}
 }
 #undef PL_AT_ONCE
 #undef PL_LANES_AT
@@ -218,84 +218,84 @@ static void PL(inners_of_turn)(const real *table, int k, real *to)
  * those of U are the same.  A symmetric matrix is read below its diagonal. */
 static void PL(factor_by_lists)(int n, int symmetric, const short *first, const short *before, real *m)
 {
-    int i, k, p, q;
-    for (i = 0; i < n; i++) {
-        real *const row = m + i * n;
-        const int end = first[i + 1], whole = end > first[i] && before[first[i]] == i - (end - first[i]);
-        real pivot = row[i];
-        for (p = first[i]; p < end; p++) {
-            const int j = before[p];
-            const real left = row[j];
-            real right = symmetric ? left : m[j * n + i];
-            for (q = first[j]; q < first[j + 1] && !symmetric; q++) {
-                right -= m[j * n + before[q]] * m[before[q] * n + i];
-            }
-            m[j * n + i] = right * m[j * n + j];
-            pivot -= left * m[j * n + i];
-            if (whole) { /* all between the first and the diagonal */
-                PL_UNROLL
-                for (k = j + 1; k < i; k++) {
-                    row[k] -= left * m[j * n + k];
-                }
-                continue;
-            }
-            for (q = p + 1; q < end; q++) {
-                row[before[q]] -= left * m[j * n + before[q]];
-            }
-        }
-        row[i] = 1 / pivot;
-    }
+	int i, k, p, q;
+	for (i = 0; i < n; i++) {
+		real *const row = m + i * n;
+		const int end = first[i + 1], whole = end > first[i] && before[first[i]] == i - (end - first[i]);
+		real pivot = row[i];
+		for (p = first[i]; p < end; p++) {
+			const int j = before[p];
+			const real left = row[j];
+			real right = symmetric ? left : m[j * n + i];
+			for (q = first[j]; q < first[j + 1] && !symmetric; q++) {
+				right -= m[j * n + before[q]] * m[before[q] * n + i];
+			}
+			m[j * n + i] = right * m[j * n + j];
+			pivot -= left * m[j * n + i];
+			if (whole) { /* all between the first and the diagonal */
+				PL_UNROLL
+				for (k = j + 1; k < i; k++) {
+					row[k] -= left * m[j * n + k];
+				}
+				continue;
+			}
+			for (q = p + 1; q < end; q++) {
+				row[before[q]] -= left * m[j * n + before[q]];
+			}
+		}
+		row[i] = 1 / pivot;
+	}
 }
 
 /* Columns of x[n][count], `width` of them from x on, right sides, become the solutions. */
 static inline void PL(solve_columns)(int n, int count, int width, const short *first, const short *before,
-                                     const real *m, real *x)
+									 const real *m, real *x)
 {
-    real sum[4];
-    int i, p, c;
-    for (i = 0; i < n; i++) {
-        PL_UNROLL
-        for (c = 0; c < width; c++) {
-            sum[c] = x[i * count + c];
-        }
-        for (p = first[i]; p < first[i + 1]; p++) {
-            const real factor = m[i * n + before[p]], *const other = x + before[p] * count;
-            PL_UNROLL
-            for (c = 0; c < width; c++) {
-                sum[c] -= factor * other[c];
-            }
-        }
-        PL_UNROLL
-        for (c = 0; c < width; c++) {
-            x[i * count + c] = sum[c] * m[i * n + i];
-        }
-    }
-    for (i = n - 1; i > 0; i--) {
-        PL_UNROLL
-        for (c = 0; c < width; c++) {
-            sum[c] = x[i * count + c];
-        }
-        for (p = first[i]; p < first[i + 1]; p++) {
-            const real factor = m[before[p] * n + i];
-            real *const other = x + before[p] * count;
-            PL_UNROLL
-            for (c = 0; c < width; c++) {
-                other[c] -= factor * sum[c];
-            }
-        }
-    }
+	real sum[4];
+	int i, p, c;
+	for (i = 0; i < n; i++) {
+		PL_UNROLL
+		for (c = 0; c < width; c++) {
+			sum[c] = x[i * count + c];
+		}
+		for (p = first[i]; p < first[i + 1]; p++) {
+			const real factor = m[i * n + before[p]], *const other = x + before[p] * count;
+			PL_UNROLL
+			for (c = 0; c < width; c++) {
+				sum[c] -= factor * other[c];
+			}
+		}
+		PL_UNROLL
+		for (c = 0; c < width; c++) {
+			x[i * count + c] = sum[c] * m[i * n + i];
+		}
+	}
+	for (i = n - 1; i > 0; i--) {
+		PL_UNROLL
+		for (c = 0; c < width; c++) {
+			sum[c] = x[i * count + c];
+		}
+		for (p = first[i]; p < first[i + 1]; p++) {
+			const real factor = m[before[p] * n + i];
+			real *const other = x + before[p] * count;
+			PL_UNROLL
+			for (c = 0; c < width; c++) {
+				other[c] -= factor * sum[c];
+			}
+		}
+	}
 }
 
 /* Four at a time, as many as registers hold */
 static void PL(solve_by_lists)(int n, int count, const short *first, const short *before, const real *m, real *x)
 {
-    int c = 0;
-    for (; c + 4 <= count; c += 4) {
-        PL(solve_columns)(n, count, 4, first, before, m, x + c);
-    }
-    for (; c < count; c++) {
-        PL(solve_columns)(n, count, 1, first, before, m, x + c);
-    }
+	int c = 0;
+	for (; c + 4 <= count; c += 4) {
+		PL(solve_columns)(n, count, 4, first, before, m, x + c);
+	}
+	for (; c < count; c++) {
+		PL(solve_columns)(n, count, 1, first, before, m, x + c);
+	}
 }
 #endif
 

@@ -19,24 +19,24 @@
 /* 1 over a size; `none` where that is 0 */
 static inline real PL(one_over)(real size, real none)
 {
-    return size > PL_TRACE ? 1 / size : size > 0 ? PL_UNIT : none;
+	return size > PL_TRACE ? 1 / size : size > 0 ? PL_UNIT : none;
 }
 
 /* The size of state i now, where it counts; whether it did */
 static inline int PL(take_size)(PL_TYPE *s, int i)
 {
-    const real size = pl_magnitude(s->PL_NOW[i]);
+	const real size = pl_magnitude(s->PL_NOW[i]);
 #if PL_FLOORS
-    if (PL(floor)[i] > 0) {
-        s->scale[i] = size + PL(floor)[i];
-        return 1;
-    }
+	if (PL(floor)[i] > 0) {
+		s->scale[i] = size + PL(floor)[i];
+		return 1;
+	}
 #endif
-    if (size > s->scale[i]) {
-        s->scale[i] = size;
-        return 1;
-    }
-    return 0;
+	if (size > s->scale[i]) {
+		s->scale[i] = size;
+		return 1;
+	}
+	return 0;
 }
 
 #if PL_KINDS
@@ -44,37 +44,37 @@ static inline int PL(take_size)(PL_TYPE *s, int i)
  * of time: relative to themselves nothing would do.  So the largest of its kind counts for each too, by a millionth. */
 static void PL(measure)(PL_TYPE *s)
 {
-    real most[3] = {0, 0, 0};
-    int i, grown = 0;
-    for (i = 0; i < PL_STATES; i++) {
-        grown = PL(take_size)(s, i) || grown;
-    }
-    if (!grown) {
-        return;
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        if (s->scale[i] > most[PL_KIND(i)]) {
-            most[PL_KIND(i)] = s->scale[i];
-        }
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        real least = most[PL_KIND(i)] / 1048576, size;
+	real most[3] = {0, 0, 0};
+	int i, grown = 0;
+	for (i = 0; i < PL_STATES; i++) {
+		grown = PL(take_size)(s, i) || grown;
+	}
+	if (!grown) {
+		return;
+	}
+	for (i = 0; i < PL_STATES; i++) {
+		if (s->scale[i] > most[PL_KIND(i)]) {
+			most[PL_KIND(i)] = s->scale[i];
+		}
+	}
+	for (i = 0; i < PL_STATES; i++) {
+		real least = most[PL_KIND(i)] / 1048576, size;
 #if PL_FLOORS
-        least = PL(floor)[i] > 0 ? 0 : least;
+		least = PL(floor)[i] > 0 ? 0 : least;
 #endif
-        size = s->scale[i] > least ? s->scale[i] : least;
-        s->unit[i] = PL(one_over)(size, 0);
-    }
+		size = s->scale[i] > least ? s->scale[i] : least;
+		s->unit[i] = PL(one_over)(size, 0);
+	}
 }
 #else
 /* The sizes of all states, and 1 over them; 0: it is 0 */
 static void PL(measure)(PL_TYPE *s)
 {
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        if (PL(take_size)(s, i)) {
-            s->unit[i] = 1 / s->scale[i];
-        }
-    }
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		if (PL(take_size)(s, i)) {
+			s->unit[i] = 1 / s->scale[i];
+		}
+	}
 }
 #endif

@@ -21,43 +21,43 @@
 
 /* x, part of h after now, of remainders at 0, 1/2 and 1 h */
 static void PL(under)(const PL_TYPE *s, const real *u, int which, real remainder[3][PL_FORCES], real part,
-                      real x[PL_SIZE])
+					  real x[PL_SIZE])
 {
-    int i;
-    PL(vector_now)(s, u, x);
-    for (i = 0; i < PL_FORCES; i++) {
-        real *const of = x + PL_FORCE_COLUMN + 3 * i;
-        of[0] = remainder[0][i];
-        of[1] = (4 * remainder[1][i] - 3 * remainder[0][i] - remainder[2][i]) / PL_H;
-        of[2] = 4 * ((remainder[0][i] - remainder[1][i]) + (remainder[2][i] - remainder[1][i])) / PL_H / PL_H;
-    }
-    PL(go_on)(s, which, part * PL_H, x);
+	int i;
+	PL(vector_now)(s, u, x);
+	for (i = 0; i < PL_FORCES; i++) {
+		real *const of = x + PL_FORCE_COLUMN + 3 * i;
+		of[0] = remainder[0][i];
+		of[1] = (4 * remainder[1][i] - 3 * remainder[0][i] - remainder[2][i]) / PL_H;
+		of[2] = 4 * ((remainder[0][i] - remainder[1][i]) + (remainder[2][i] - remainder[1][i])) / PL_H / PL_H;
+	}
+	PL(go_on)(s, which, part * PL_H, x);
 }
 
 /* y tau [s] after now */
 static PL_APART void PL(state_at)(const PL_TYPE *s, const real *u, real tau, real y[PL_STATES])
 {
-    const int which = PL_CHOICE(s, u);
-    const real part = tau / PL_H;
-    PL_TYPE end = *s;
-    real remainder[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
-    int i;
-    PL_BARE(&end PL_GIVEN);
-    PL(remainder_at)(s, which, 0, u, s->y, remainder[0]);
-    PL(remainder_at)(s, which, PL_END, u, end.y, remainder[2]);
-    for (i = 0; i < PL_FORCES; i++) {
-        remainder[1][i] = (remainder[0][i] + remainder[2][i]) / 2;
-    }
-    PL(under)(s, u, which, remainder, (real)1 / 2, x);
-    PL(remainder_at)(s, which, PL_MIDDLE, u, x, remainder[1]);
-    PL(under)(s, u, which, remainder, 1, x);
-    for (i = 0; i < PL_STATES; i++) {
-        missed[i] = end.y[i] - x[i];
-    }
-    PL(under)(s, u, which, remainder, part, x);
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] = part > 0 ? x[i] + part * part * part * missed[i] : s->y[i];
-    }
+	const int which = PL_CHOICE(s, u);
+	const real part = tau / PL_H;
+	PL_TYPE end = *s;
+	real remainder[3][PL_FORCES], x[PL_SIZE], missed[PL_STATES];
+	int i;
+	PL_BARE(&end PL_GIVEN);
+	PL(remainder_at)(s, which, 0, u, s->y, remainder[0]);
+	PL(remainder_at)(s, which, PL_END, u, end.y, remainder[2]);
+	for (i = 0; i < PL_FORCES; i++) {
+		remainder[1][i] = (remainder[0][i] + remainder[2][i]) / 2;
+	}
+	PL(under)(s, u, which, remainder, (real)1 / 2, x);
+	PL(remainder_at)(s, which, PL_MIDDLE, u, x, remainder[1]);
+	PL(under)(s, u, which, remainder, 1, x);
+	for (i = 0; i < PL_STATES; i++) {
+		missed[i] = end.y[i] - x[i];
+	}
+	PL(under)(s, u, which, remainder, part, x);
+	for (i = 0; i < PL_STATES; i++) {
+		y[i] = part > 0 ? x[i] + part * part * part * missed[i] : s->y[i];
+	}
 }
 
 #include "undef.h"

@@ -79,31 +79,31 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
  * at a time, in one order for all.  Inline: of many rows a call for each costs a fifth of the time. */
 static inline real dot_product(int n, const real *row, const real *x)
 {
-    const int whole = n - n % 4;
-    real s0 = 0, s1 = 0, s2 = 0, s3 = 0;
-    int j;
-    for (j = 0; j < whole; j += 4) {
-        s0 += row[j] * x[j];
-        s1 += row[j + 1] * x[j + 1];
-        s2 += row[j + 2] * x[j + 2];
-        s3 += row[j + 3] * x[j + 3];
-    }
-    if (j < n) {
-        s0 += row[j] * x[j];
-    }
-    if (j + 1 < n) {
-        s1 += row[j + 1] * x[j + 1];
-    }
-    if (j + 2 < n) {
-        s2 += row[j + 2] * x[j + 2];
-    }
-    return (s0 + s2) + (s1 + s3);
+	const int whole = n - n % 4;
+	real s0 = 0, s1 = 0, s2 = 0, s3 = 0;
+	int j;
+	for (j = 0; j < whole; j += 4) {
+		s0 += row[j] * x[j];
+		s1 += row[j + 1] * x[j + 1];
+		s2 += row[j + 2] * x[j + 2];
+		s3 += row[j + 3] * x[j + 3];
+	}
+	if (j < n) {
+		s0 += row[j] * x[j];
+	}
+	if (j + 1 < n) {
+		s1 += row[j + 1] * x[j + 1];
+	}
+	if (j + 2 < n) {
+		s2 += row[j + 2] * x[j + 2];
+	}
+	return (s0 + s2) + (s1 + s3);
 }
 
 /* A number and its bits, IEEE 754: sign, exponent + REAL_EXPONENTS - 1, then REAL_DIGITS - 1 bits of the fraction */
 typedef union real_parts {
-    real value;
-    real_bits bits;
+	real value;
+	real_bits bits;
 } real_parts;
 
 #define REAL_FRACTION (((real_bits)1 << (REAL_DIGITS - 1)) - 1)

@@ -18,22 +18,22 @@ PL_APART void PL(out)(const PL_TYPE *s, real out[PL_OUTPUTS]);
 static inline real *PL(run_on)(PL_TYPE *s, const real *u, real *out)
 {
 #if PL_INSIDE
-    if (s->served + 1 < s->valid) {
-        PL(inside)(s);
-    } else {
-        PL(step)(s);
-    }
+	if (s->served + 1 < s->valid) {
+		PL(inside)(s);
+	} else {
+		PL(step)(s);
+	}
 #elif PL_INPUTS > 0
-    PL(step)(s, u);
+	PL(step)(s, u);
 #else
-    PL(step)(s);
+	PL(step)(s);
 #endif
-    (void)u;
-    if (out == NULL) {
-        return NULL;
-    }
-    PL(out)(s, out);
-    return out + PL_OUTPUTS;
+	(void)u;
+	if (out == NULL) {
+		return NULL;
+	}
+	PL(out)(s, out);
+	return out + PL_OUTPUTS;
 }
 
 /* Not once more where the descriptor calls it */
@@ -43,48 +43,48 @@ PL_APART void PL(run)(PL_TYPE *s, size_t n, const real *u, real *out)
 #else
 PL_APART void PL(run)(PL_TYPE *s, size_t n, real *out)
 {
-    const real *const u = NULL;
+	const real *const u = NULL;
 #endif
 #if PL_OVER
-    for (; n > 0 && s->served > 0; n--) {
-        out = PL(run_on)(s, u, out);
-    }
+	for (; n > 0 && s->served > 0; n--) {
+		out = PL(run_on)(s, u, out);
+	}
 #endif
 #if PL_ROWS > 0
-    if (n >= PL_ROWS) {
-        PL_TYPE now = *s; /* over all blocks, so that its states may be in registers */
+	if (n >= PL_ROWS) {
+		PL_TYPE now = *s; /* over all blocks, so that its states may be in registers */
 #if PL_REFRESHED
-        PL(refresh_phasors)(&now);
+		PL(refresh_phasors)(&now);
 #endif
-        for (; n >= PL_ROWS; n -= PL_ROWS) {
+		for (; n >= PL_ROWS; n -= PL_ROWS) {
 #if PL_OVER
-            if (!PL(block)(&now, out)) {
-                break;
-            }
+			if (!PL(block)(&now, out)) {
+				break;
+			}
 #elif PL_INPUTS > 0
-            PL(block)(&now, u, out);
-            u += PL_ROWS * PL_INPUTS;
+			PL(block)(&now, u, out);
+			u += PL_ROWS * PL_INPUTS;
 #else
-            PL(block)(&now, out);
+			PL(block)(&now, out);
 #endif
 #if PL_FLUSHES > 0
-            if ((now.k & 63u) < PL_ROWS) {
-                PL(flush)(&now);
-            }
+			if ((now.k & 63u) < PL_ROWS) {
+				PL(flush)(&now);
+			}
 #endif
-            if (out != NULL) {
-                out += PL_ROWS * PL_OUTPUTS;
-            }
-        }
-        *s = now;
-    }
+			if (out != NULL) {
+				out += PL_ROWS * PL_OUTPUTS;
+			}
+		}
+		*s = now;
+	}
 #endif
-    for (; n > 0; n--) {
-        out = PL(run_on)(s, u, out);
+	for (; n > 0; n--) {
+		out = PL(run_on)(s, u, out);
 #if PL_INPUTS > 0
-        u += PL_INPUTS;
+		u += PL_INPUTS;
 #endif
-    }
+	}
 }
 
 #include "undef.h"

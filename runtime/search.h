@@ -114,14 +114,16 @@
 #define PL_FUNCTION_BOUNDS (real *)0, (real *)0, (real *)0
 static pl_cached_guards PL(cached_guards)(const PL_TYPE *s)
 {
-    struct PL_TYPE *const own = (struct PL_TYPE *)s;
-    const pl_cached_guards g = {
-        PL_MOST_GUARDS, PL_MOST_HOLDS, PL(first), PL(guard), PL(limit), PL(guard_row)[0], PL(guard_amplitude),
-        PL(holding), PL(sets), PL(held), PL(owner), PL(value)[0], PL_KEPT(count), PL_KEPT(guard), PL_KEPT(limit),
-        PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_KEPT(guard_chord_error)[0], PL_KEPT(guard_cubic_error)[0],
-        PL_KEPT(guard_amplitude), PL_KEPT(bend)[0], PL_KEPT(sets), PL_KEPT(held), PL_KEPT(value)[0]
-    };
-    return g;
+	struct PL_TYPE *const own = (struct PL_TYPE *)s;
+	const pl_cached_guards g = {
+		PL_MOST_GUARDS, PL_MOST_HOLDS, PL(first), PL(guard), PL(limit), PL(guard_row)[0], PL(guard_amplitude),
+		PL(holding), PL(sets), PL(held), PL(owner), PL(value)[0], PL_KEPT(count), PL_KEPT(guard),
+				PL_KEPT(limit),
+		PL_KEPT(guard_row)[0], PL_KEPT(guard_tangent)[0], PL_KEPT(guard_chord_error)[0],
+				PL_KEPT(guard_cubic_error)[0],
+		PL_KEPT(guard_amplitude), PL_KEPT(bend)[0], PL_KEPT(sets), PL_KEPT(held), PL_KEPT(value)[0]
+	};
+	return g;
 }
 #else
 #define PL_FUNCTION_BOUNDS PL_KEPT(chord_error)[0][0], PL_KEPT(cubic_error)[0][0], PL_KEPT(bend)[0]
@@ -129,14 +131,16 @@ static pl_cached_guards PL(cached_guards)(const PL_TYPE *s)
 
 static pl_cached PL(cached)(const PL_TYPE *s, int first, const pl_cached_guards *g)
 {
-    struct PL_TYPE *const own = (struct PL_TYPE *)s;
-    const pl_cached c = {
-        pl_cached_matrix, PL_SIZE, PL_SWITCHING_FUNCTIONS, PL_SLOTS, PL_RUNGS, PL_HALVINGS, PL_REGIONS, first, PL_H,
-        PL(breaks), PL_ROWS_OF_ALL, PL(sum), PL(constant), PL_KEPT(slot), &PL_KEPT(clock), PL_KEPT(halvings),
-        PL_KEPT(spacing), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_KEPT(rungs)[0][0], PL_KEPT(tangent)[0][0],
-        PL_FUNCTION_BOUNDS, PL_KEPT(work), -1, g
-    };
-    return c;
+	struct PL_TYPE *const own = (struct PL_TYPE *)s;
+	const pl_cached c = {
+		pl_cached_matrix, PL_SIZE, PL_SWITCHING_FUNCTIONS, PL_SLOTS, PL_RUNGS, PL_HALVINGS, PL_REGIONS, first,
+				PL_H,
+		PL(breaks), PL_ROWS_OF_ALL, PL(sum), PL(constant), PL_KEPT(slot), &PL_KEPT(clock), PL_KEPT(halvings),
+		PL_KEPT(spacing), PL_KEPT(slopes)[0][0], PL_KEPT(pieces)[0][0], PL_KEPT(rungs)[0][0],
+				PL_KEPT(tangent)[0][0],
+		PL_FUNCTION_BOUNDS, PL_KEPT(work), -1, g
+	};
+	return c;
 }
 #endif
 
@@ -145,12 +149,12 @@ static pl_cached PL(cached)(const PL_TYPE *s, int first, const pl_cached_guards 
 static PL_SEARCH PL(switching)(const PL_TYPE *s, int segment)
 {
 #if PL_SLOTS > 0
-    struct PL_TYPE *const own = (struct PL_TYPE *)s;
+	struct PL_TYPE *const own = (struct PL_TYPE *)s;
 #endif
-    const PL_SEARCH tables = {PL_TABLES};
-    (void)s;
-    (void)segment;
-    return tables;
+	const PL_SEARCH tables = {PL_TABLES};
+	(void)s;
+	(void)segment;
+	return tables;
 }
 #else
 static const PL_SEARCH PL(switching) = {PL_TABLES};
@@ -173,28 +177,28 @@ static const PL_SEARCH PL(switching) = {PL_TABLES};
 #if PL_SWITCHING_FUNCTIONS > 0
 /* The region of x in a segment of time */
 static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VECTOR], pl_contact *contact,
-                              real work[PL_WORK])
+							  real work[PL_WORK])
 {
 #if PL_SEGMENTS > 1
-    PL_SEARCH here = PL(switching)(s, segment);
+	PL_SEARCH here = PL(switching)(s, segment);
 #if PL_SLOTS == 0
-    here.matrix += segment * PL_REGIONS;
+	here.matrix += segment * PL_REGIONS;
 #endif
 #if PL_GUARDS && PL_SLOTS == 0
-    here.first += segment * PL_REGIONS;
-    here.hold += segment * PL_REGIONS;
+	here.first += segment * PL_REGIONS;
+	here.hold += segment * PL_REGIONS;
 #endif
-    PL_CACHE(here, segment * PL_REGIONS)
-    PL_START(&here, x, contact, work);
-    contact->region += segment * PL_REGIONS;
+	PL_CACHE(here, segment * PL_REGIONS)
+	PL_START(&here, x, contact, work);
+	contact->region += segment * PL_REGIONS;
 #elif PL_OWN || PL_SLOTS > 0
-    PL_SEARCH here = PL(switching)(s, segment);
-    PL_CACHE(here, 0)
-    PL_START(&here, x, contact, work);
+	PL_SEARCH here = PL(switching)(s, segment);
+	PL_CACHE(here, 0)
+	PL_START(&here, x, contact, work);
 #else
-    (void)s;
-    (void)segment;
-    PL_START(&PL(switching), x, contact, work);
+	(void)s;
+	(void)segment;
+	PL_START(&PL(switching), x, contact, work);
 #endif
 }
 #endif
@@ -206,19 +210,23 @@ static void PL(begin_contact)(const PL_TYPE *s, int segment, const real x[PL_VEC
 /* row . x in the order of the runtime's sums: of each fourth term, then these */
 static PL_INLINE double PL(dot)(const double *row, const double *x)
 {
-    double s[4] = {-0.0, -0.0, -0.0, -0.0};
-    int j;
-    PL_UNROLL
-    for (j = 0; j < PL_SIZE; j++) {
-        s[j % 4] += row[j] * x[j];
-    }
-    return (s[0] + s[2]) + (s[1] + s[3]);
+	double s[4] = {-0.0, -0.0, -0.0, -0.0};
+	int j;
+	PL_UNROLL
+	for (j = 0; j < PL_SIZE; j++) {
+		s[j % 4] += row[j] * x[j];
+	}
+	return (s[0] + s[2]) + (s[1] + s[3]);
 }
 #if !PL_FEW_REGIONS
 #define PL_SUM(row, x) PL(dot)(row, x)
 #define PL_EACH
 #endif
+#ifdef PL_AS_ON_BOARDS /* small processors take steps with events by the search alone */
+#define PL_MEETS 0
+#else
 #define PL_MEETS (!PL_OWN && PL_SEGMENTS < 2 && !PL_SLOTS && PL_SIZE < 9 && PL_DEGREE < 17)
+#endif
 #include "unmet.h"
 #endif
 
@@ -226,36 +234,36 @@ static PL_INLINE double PL(dot)(const double *row, const double *x)
 /* The same intervals after the next change; where they cannot be then, the equations of the region where x is */
 static void PL(next_segment)(const PL_TYPE *s, const real x[PL_VECTOR], pl_contact *contact, real work[PL_WORK])
 {
-    contact->region += PL_REGIONS;
+	contact->region += PL_REGIONS;
 #if PL_SLOTS > 0 /* the search makes it */
-    (void)s;
-    (void)x;
-    (void)work;
+	(void)s;
+	(void)x;
+	(void)work;
 #else
 #if PL_LOST
-    if (PL(matrix)[contact->region] < 0) {
-        pl_contact now;
-        PL(begin_contact)(s, contact->region / PL_REGIONS, x, &now, work);
-        contact->matrix = now.matrix;
-        return;
-    }
+	if (PL(matrix)[contact->region] < 0) {
+		pl_contact now;
+		PL(begin_contact)(s, contact->region / PL_REGIONS, x, &now, work);
+		contact->matrix = now.matrix;
+		return;
+	}
 #else
-    (void)s;
-    (void)x;
-    (void)work;
+	(void)s;
+	(void)x;
+	(void)work;
 #endif
-    contact->matrix = PL(matrix)[contact->region];
+	contact->matrix = PL(matrix)[contact->region];
 #endif
 }
 
 /* Counts what is found from `done` on, as of the start. */
 static int PL(counted)(const pl_contact *contact, real done, int count, pl_crossing *crossing)
 {
-    int i;
-    for (i = count; i < count + contact->crossings; i++) {
-        crossing[i].time += done;
-    }
-    return count + contact->crossings;
+	int i;
+	for (i = count; i < count + contact->crossings; i++) {
+		crossing[i].time += done;
+	}
+	return count + contact->crossings;
 }
 
 /* Whether segment k ends in the step, or in what is left of it to tau.  Where there are no regions the next step begins
@@ -264,84 +272,84 @@ static int PL(counted)(const pl_contact *contact, real done, int count, pl_cross
 static int PL(ends_before)(real change, real tau PL_AND_VARIATION)
 {
 #if PL_COLUMNS_D > 0
-    if (PL_SWITCHING_FUNCTIONS == 0 && v != NULL) {
-        return change <= tau + PL_INSTANT;
-    }
+	if (PL_SWITCHING_FUNCTIONS == 0 && v != NULL) {
+		return change <= tau + PL_INSTANT;
+	}
 #endif
-    return PL_GUARDS ? change <= tau : change < tau;
+	return PL_GUARDS ? change <= tau : change < tau;
 }
 
 /* x on by tau, from change to change of the loads.  Of what sticks and bounces a change at the end, too, is decided at
  * once: outputs read it. */
 static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
-                            pl_crossing *crossing PL_AND_VARIATION)
+							pl_crossing *crossing PL_AND_VARIATION)
 {
-    const real never = PL_GUARDS || PL_SWITCHING_FUNCTIONS == 0 ? 2 * PL_H : tau;
-    real done = 0, work[PL_WORK];
-    int count = 0;
-    for (;;) {
-        const int segment = contact->region / PL_REGIONS;
-        const real change = segment < PL_SEGMENTS - 1 ? PL_UNTIL(s, segment) : never;
-        const real to = change < tau ? change : tau;
-        PL_SEARCH here = PL(switching)(s, segment);
-        PL_CACHE(here, 0)
-        here.max_events -= count;
+	const real never = PL_GUARDS || PL_SWITCHING_FUNCTIONS == 0 ? 2 * PL_H : tau;
+	real done = 0, work[PL_WORK];
+	int count = 0;
+	for (;;) {
+		const int segment = contact->region / PL_REGIONS;
+		const real change = segment < PL_SEGMENTS - 1 ? PL_UNTIL(s, segment) : never;
+		const real to = change < tau ? change : tau;
+		PL_SEARCH here = PL(switching)(s, segment);
+		PL_CACHE(here, 0)
+		here.max_events -= count;
 #if PL_COLUMNS_D > 0
-        if (v != NULL) {
-            v->segment = segment;
-        }
+		if (v != NULL) {
+			v->segment = segment;
+		}
 #endif
-        PL_ADVANCE(&here, to - done, x, contact, crossing + count, work PL_V);
-        count = PL(counted)(contact, done, count, crossing);
-        if (!PL(ends_before)(change, tau PL_V)) {
-            break;
-        }
-        if (to > done) {
-            done = to;
-        }
+		PL_ADVANCE(&here, to - done, x, contact, crossing + count, work PL_V);
+		count = PL(counted)(contact, done, count, crossing);
+		if (!PL(ends_before)(change, tau PL_V)) {
+			break;
+		}
+		if (to > done) {
+			done = to;
+		}
 #if PL_COLUMNS_D > 0
-        if (v != NULL && !(PL_SWITCHING_FUNCTIONS == 0 && change <= PL_INSTANT)) {
-            pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_VECTOR * PL_SIZE, x);
-            v->segment = segment + 1;
-        }
+		if (v != NULL && !(PL_SWITCHING_FUNCTIONS == 0 && change <= PL_INSTANT)) {
+			pl_variation_change(v, PL_SIZE, here.A + (ptrdiff_t)contact->matrix * PL_VECTOR * PL_SIZE, x);
+			v->segment = segment + 1;
+		}
 #endif
-        PL(next_segment)(s, x, contact, work);
+		PL(next_segment)(s, x, contact, work);
 #if PL_GUARDS
-        here = PL(switching)(s, segment + 1);
+		here = PL(switching)(s, segment + 1);
 #if PL_SLOTS > 0
-        here.cached = &cached;
+		here.cached = &cached;
 #endif
-        here.max_events -= count;
-        PL_CHANGE(&here, done, x, contact, crossing + count, work PL_V);
-        count += contact->crossings;
+		here.max_events -= count;
+		PL_CHANGE(&here, done, x, contact, crossing + count, work PL_V);
+		count += contact->crossings;
 #endif
-    }
-    contact->crossings = count;
+	}
+	contact->crossings = count;
 }
 #else
 /* x on by tau */
 static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact,
-                            pl_crossing *crossing PL_AND_VARIATION)
+							pl_crossing *crossing PL_AND_VARIATION)
 {
-    real work[PL_WORK];
+	real work[PL_WORK];
 #if PL_OWN || PL_SLOTS > 0
-    PL_SEARCH here = PL(switching)(s, 0);
-    PL_CACHE(here, 0)
-    PL_ADVANCE(&here, tau, x, contact, crossing, work PL_V);
+	PL_SEARCH here = PL(switching)(s, 0);
+	PL_CACHE(here, 0)
+	PL_ADVANCE(&here, tau, x, contact, crossing, work PL_V);
 #else
-    (void)s;
+	(void)s;
 #if PL_EVENT_FREE && PL_GUARDS && !(PL_COLUMNS_D > 0)
-    if (PL_SOFT) {
-        pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
-        return;
-    }
+	if (PL_SOFT) {
+		pl_guards_step(&PL(switching), tau, x, contact, crossing, work);
+		return;
+	}
 #endif
 #if PL_MEETS /* derivatives, which the search takes along, leave the state as it is without them */
-    if (PL_WITHOUT_V && tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
-        return;
-    }
+	if (PL_WITHOUT_V && tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
+		return;
+	}
 #endif
-    PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work PL_V);
+	PL_ADVANCE(&PL(switching), tau, x, contact, crossing, work PL_V);
 #endif
 }
 
@@ -360,27 +368,27 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 /* Where the search has come to */
 static inline void PL(arrive)(PL_TYPE *s, const real x[PL_VECTOR])
 {
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        s->y[PL_PLACE(i)] = x[i];
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		s->y[PL_PLACE(i)] = x[i];
 #if PL_COMPENSATED
-        s->low[PL_PLACE(i)] = x[PL_SIZE + i];
+		s->low[PL_PLACE(i)] = x[PL_SIZE + i];
 #endif
-    }
-    s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);
+	}
+	s->status |= s->contact PL_PART.status | pl_not_finite(s->y, PL_ALL);
 }
 
 /* By the search, from x; its states are those of s */
 static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 {
 #if PL_EVENT_FREE && PL_GUARDS
-    int i;
-    for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
-        x[i] = s->y[PL_PLACE(i)];
-    }
+	int i;
+	for (i = 0; i < PL_STATES && !PL_SOFT; i++) {
+		x[i] = s->y[PL_PLACE(i)];
+	}
 #endif
-    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
-    PL(arrive)(s, x);
+	PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
+	PL(arrive)(s, x);
 }
 #endif
 
@@ -394,72 +402,72 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 /* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is, which moves
  * along.  known: so many crossings are there, and all; -1: they are searched for */
 static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing,
-                           int known, real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+						   int known, real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-    real scale[PL_SIZE], when[PL_COLUMNS_D], dg[PL_COLUMNS_D], noise[PL_SIZE];
-    real work[PL_VARIATION_WORK(PL_SIZE, PL_DEGREE_D)];
-    pl_variation v;
-    int i, p;
-    v.columns = PL_COLUMNS_D;
-    v.matrices = PL_MATRICES_D;
-    v.degree = PL_DEGREE_D;
-    v.first = PL(varied_first);
-    v.entry = PL_OF(varied);
-    v.over = PL_VARIED_STEP;
-    v.segment = v.pending = v.sticks = v.upward = 0;
-    v.function = v.last = -1;
-    v.doubt.status = 0;
-    v.jumped = 0;
-    v.acted = 0;
-    v.S = S[0];
-    v.scale = scale;
-    v.when = when;
-    v.dg = dg;
-    v.noise = noise;
-    v.work = work;
-    for (i = 0; i < PL_SIZE; i++) {
-        scale[i] = i < PL_STATES ? ds->scale[PL_PLACE(i)] : 0;
-        S[PL_COLUMNS_D][i] = 0;
-    }
-    for (p = 0; p < PL_COLUMNS_D; p++) {
-        for (i = 0; i < PL_STATES; i++) {
-            S[p][i] = ds->s[p][PL_PLACE(i)];
-        }
-    }
+	real scale[PL_SIZE], when[PL_COLUMNS_D], dg[PL_COLUMNS_D], noise[PL_SIZE];
+	real work[PL_VARIATION_WORK(PL_SIZE, PL_DEGREE_D)];
+	pl_variation v;
+	int i, p;
+	v.columns = PL_COLUMNS_D;
+	v.matrices = PL_MATRICES_D;
+	v.degree = PL_DEGREE_D;
+	v.first = PL(varied_first);
+	v.entry = PL_OF(varied);
+	v.over = PL_VARIED_STEP;
+	v.segment = v.pending = v.sticks = v.upward = 0;
+	v.function = v.last = -1;
+	v.doubt.status = 0;
+	v.jumped = 0;
+	v.acted = 0;
+	v.S = S[0];
+	v.scale = scale;
+	v.when = when;
+	v.dg = dg;
+	v.noise = noise;
+	v.work = work;
+	for (i = 0; i < PL_SIZE; i++) {
+		scale[i] = i < PL_STATES ? ds->scale[PL_PLACE(i)] : 0;
+		S[PL_COLUMNS_D][i] = 0;
+	}
+	for (p = 0; p < PL_COLUMNS_D; p++) {
+		for (i = 0; i < PL_STATES; i++) {
+			S[p][i] = ds->s[p][PL_PLACE(i)];
+		}
+	}
 #if PL_SHARED && PL_FEW > 0
-    if (known >= 0) {
-        pl_switching_follow_d(&PL(switching), known, crossing, x, contact, &v);
-    } else
+	if (known >= 0) {
+		pl_switching_follow_d(&PL(switching), known, crossing, x, contact, &v);
+	} else
 #else
-    (void)known;
+	(void)known;
 #endif
-    PL(search_step)(s, tau, x, contact, crossing, &v);
-    for (i = 0; i < PL_STATES; i++) {
-        ds->scale[PL_PLACE(i)] = scale[i];
-    }
-    for (p = 0; p < PL_COLUMNS_D; p++) {
-        for (i = 0; i < PL_STATES; i++) {
-            ds->s[p][PL_PLACE(i)] = S[p][i];
-        }
-    }
-    if (contact->status & PL_UNDECIDED) {
-        pl_doubt_add(&v.doubt, PL_D_UNDECIDED, -1, tau);
-    }
+	PL(search_step)(s, tau, x, contact, crossing, &v);
+	for (i = 0; i < PL_STATES; i++) {
+		ds->scale[PL_PLACE(i)] = scale[i];
+	}
+	for (p = 0; p < PL_COLUMNS_D; p++) {
+		for (i = 0; i < PL_STATES; i++) {
+			ds->s[p][PL_PLACE(i)] = S[p][i];
+		}
+	}
+	if (contact->status & PL_UNDECIDED) {
+		pl_doubt_add(&v.doubt, PL_D_UNDECIDED, -1, tau);
+	}
 #if !PL_ALONE
-    for (i = 0; i < 4; i++) {
-        v.doubt.function[i] = -1; /* they are numbers of this part */
-    }
+	for (i = 0; i < 4; i++) {
+		v.doubt.function[i] = -1; /* they are numbers of this part */
+	}
 #endif
-    pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
-    ds->status = ds->doubt.status;
+	pl_doubt_join(&ds->doubt, &v.doubt, 0); /* the step starts then: who calls it adds that */
+	ds->status = ds->doubt.status;
 }
 
 /* s stays. */
 static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact,
-                     real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+					 real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
-    PL(vary_along)(s, tau, x, &contact, crossing, -1, S, ds);
+	pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+	PL(vary_along)(s, tau, x, &contact, crossing, -1, S, ds);
 }
 #endif
 
@@ -468,30 +476,30 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
 static void PL(vary_searched)(PL_TYPE *s, real x[PL_VECTOR], real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
 #if PL_EVENT_FREE && PL_GUARDS && PL_MEETS
-    real from[PL_VECTOR];
-    int i;
-    for (i = 0; i < PL_VECTOR; i++) {
-        from[i] = x[i];
-    }
-    PL(vary)(s, PL_H, from, s->contact PL_PART, S, ds);
-    PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
+	real from[PL_VECTOR];
+	int i;
+	for (i = 0; i < PL_VECTOR; i++) {
+		from[i] = x[i];
+	}
+	PL(vary)(s, PL_H, from, s->contact PL_PART, S, ds);
+	PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
 #else
-    PL(vary_along)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART, -1, S, ds);
+	PL(vary_along)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART, -1, S, ds);
 #endif
-    PL(arrive)(s, x);
+	PL(arrive)(s, x);
 }
 
 #if PL_FEW > 0
 /* Over h from x in this region, where s has begun and met the crossings that it has */
 static void PL(vary_through)(const PL_TYPE *s, real x[PL_VECTOR], pl_contact from,
-                             real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
+							 real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-    pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
-    int i;
-    for (i = 0; i < s->contact PL_PART.crossings; i++) {
-        crossing[i] = s->crossing PL_PART[i];
-    }
-    PL(vary_along)(s, PL_H, x, &from, crossing, s->contact PL_PART.crossings, S, ds);
+	pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+	int i;
+	for (i = 0; i < s->contact PL_PART.crossings; i++) {
+		crossing[i] = s->crossing PL_PART[i];
+	}
+	PL(vary_along)(s, PL_H, x, &from, crossing, s->contact PL_PART.crossings, S, ds);
 }
 #endif
 
@@ -499,49 +507,49 @@ static void PL(vary_through)(const PL_TYPE *s, real x[PL_VECTOR], pl_contact fro
 /* row . x, of so many entries */
 static PL_INLINE real PL(part_of_row)(const real *row, const real *x, int entries)
 {
-    real sum = 0;
-    int j;
-    PL_UNROLL
-    for (j = 0; j < entries; j++) {
-        sum += row[j] * x[j];
-    }
-    return sum;
+	real sum = 0;
+	int j;
+	PL_UNROLL
+	for (j = 0; j < entries; j++) {
+		sum += row[j] * x[j];
+	}
+	return sum;
 }
 
 /* The same over h, of which it is sure that x, where the step began, meets nothing in it: S+ = Phi S + Phi_p x */
 static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], real S[PL_COLUMNS_D + 1][PL_SIZE],
-                                    PL_D *ds)
+									PL_D *ds)
 {
-    const real *Phi = PL_WHOLE_STEP[s->contact.matrix][0], *over = PL_VARIED_STEP;
-    int i, p;
-    if (over == NULL) {
-        real from[PL_VECTOR];
-        for (i = 0; i < PL_SIZE; i++) {
-            from[i] = x[i];
-        }
-        PL(vary)(s, PL_H, from, s->contact, S, ds);
-        return;
-    }
-    for (p = 0; p < PL_COLUMNS_D; p++) {
-        const real *const change = over + (p * PL_MATRICES_D + s->contact.matrix) * PL_SIZE * PL_SIZE;
-        for (i = 0; i < PL_STATES; i++) {
-            S[p][i] = ds->s[p][PL_PLACE(i)];
-        }
-        for (i = 0; i < PL_STATES; i++) {
-            const int row = i * PL_SIZE;
-            real sum = PL_ACTING_D(p) ? PL(part_of_row)(Phi + row, S[p], PL_SIZE)
-                                      : PL(part_of_row)(Phi + row, S[p], PL_STATES);
-            if (PL_MOVING_D(p)) {
-                sum += PL(part_of_row)(change + row, x, PL_SIZE);
-            }
-            ds->s[p][PL_PLACE(i)] = sum;
-        }
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        if (pl_magnitude(x[i]) > ds->scale[PL_PLACE(i)]) {
-            ds->scale[PL_PLACE(i)] = pl_magnitude(x[i]);
-        }
-    }
+	const real *Phi = PL_WHOLE_STEP[s->contact.matrix][0], *over = PL_VARIED_STEP;
+	int i, p;
+	if (over == NULL) {
+		real from[PL_VECTOR];
+		for (i = 0; i < PL_SIZE; i++) {
+			from[i] = x[i];
+		}
+		PL(vary)(s, PL_H, from, s->contact, S, ds);
+		return;
+	}
+	for (p = 0; p < PL_COLUMNS_D; p++) {
+		const real *const change = over + (p * PL_MATRICES_D + s->contact.matrix) * PL_SIZE * PL_SIZE;
+		for (i = 0; i < PL_STATES; i++) {
+			S[p][i] = ds->s[p][PL_PLACE(i)];
+		}
+		for (i = 0; i < PL_STATES; i++) {
+			const int row = i * PL_SIZE;
+			real sum = PL_ACTING_D(p) ? PL(part_of_row)(Phi + row, S[p], PL_SIZE)
+									  : PL(part_of_row)(Phi + row, S[p], PL_STATES);
+			if (PL_MOVING_D(p)) {
+				sum += PL(part_of_row)(change + row, x, PL_SIZE);
+			}
+			ds->s[p][PL_PLACE(i)] = sum;
+		}
+	}
+	for (i = 0; i < PL_STATES; i++) {
+		if (pl_magnitude(x[i]) > ds->scale[PL_PLACE(i)]) {
+			ds->scale[PL_PLACE(i)] = pl_magnitude(x[i]);
+		}
+	}
 }
 #endif
 #endif
@@ -550,31 +558,31 @@ static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], rea
 int PL(region)(const PL_TYPE *s)
 {
 #if PL_SEGMENTS > 1
-    return s->contact.region % PL_REGIONS;
+	return s->contact.region % PL_REGIONS;
 #else
-    return s->contact.region;
+	return s->contact.region;
 #endif
 }
 
 uint64_t PL(crossed)(const PL_TYPE *s)
 {
-    return s->contact.total;
+	return s->contact.total;
 }
 
 int PL(crossings)(const PL_TYPE *s, pl_crossing crossing[PL_MAX_EVENTS])
 {
-    const int count = s->contact.crossings < PL_MAX_EVENTS ? s->contact.crossings : PL_MAX_EVENTS;
-    int i;
-    for (i = 0; i < count; i++) {
-        crossing[i] = s->crossing[i];
-    }
-    return count;
+	const int count = s->contact.crossings < PL_MAX_EVENTS ? s->contact.crossings : PL_MAX_EVENTS;
+	int i;
+	for (i = 0; i < count; i++) {
+		crossing[i] = s->crossing[i];
+	}
+	return count;
 }
 
 #if PL_BOUNCES
 int PL(rested)(const PL_TYPE *s)
 {
-    return s->contact.rested;
+	return s->contact.rested;
 }
 #endif
 #endif

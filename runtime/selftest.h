@@ -24,14 +24,14 @@
 /* The largest of worst and |y - known|, in units in the last place */
 static real PL(deviation)(const real *y, const real *known, real worst)
 {
-    int i;
-    for (i = 0; i < PL_STATES && worst == worst; i++) {
-        const real off = (y[i] < known[i] ? known[i] - y[i] : y[i] - known[i]) / PL(known_unit)[i];
-        if (!(off <= worst)) {
-            worst = off; /* not a number, too: and it stays */
-        }
-    }
-    return worst;
+	int i;
+	for (i = 0; i < PL_STATES && worst == worst; i++) {
+		const real off = (y[i] < known[i] ? known[i] - y[i] : y[i] - known[i]) / PL(known_unit)[i];
+		if (!(off <= worst)) {
+			worst = off; /* not a number, too: and it stays */
+		}
+	}
+	return worst;
 }
 
 #if PL_CROSSED > 0
@@ -40,88 +40,89 @@ static real PL(deviation)(const real *y, const real *known, real worst)
  * otherwise than by their order. */
 static real PL(crossed_as)(const PL_TYPE *s, uint64_t k, int *found, real worst)
 {
-    pl_crossing crossing[PL_MAX_EVENTS];
-    const int count = PL(crossings)(s, crossing);
-    int i;
-    for (i = 0; i < count; i++) {
-        real off;
-        if (k == 0 && !(crossing[i].time > (real)0.0009765625 * PL_KNOWN_H)) {
-            continue; /* where the start stands is found there */
-        }
-        if (*found == PL_CROSSED) {
-            return (real)1e30;
-        }
-        off = ((real)k - (real)PL(known_crossing_step)[*found]) * PL_KNOWN_H + crossing[i].time -
-              PL(known_crossing)[*found][0];
-        off = (off < 0 ? -off : off) / PL(known_crossing)[*found][1];
-        if (!(off <= worst) && worst == worst) {
-            worst = off;
-        }
-        ++*found;
-    }
-    return worst;
+	pl_crossing crossing[PL_MAX_EVENTS];
+	const int count = PL(crossings)(s, crossing);
+	int i;
+	for (i = 0; i < count; i++) {
+		real off;
+		if (k == 0 && !(crossing[i].time > (real)0.0009765625 * PL_KNOWN_H)) {
+			continue; /* where the start stands is found there */
+		}
+		if (*found == PL_CROSSED) {
+			return (real)1e30;
+		}
+		off = ((real)k - (real)PL(known_crossing_step)[*found]) * PL_KNOWN_H + crossing[i].time -
+			  PL(known_crossing)[*found][0];
+		off = (off < 0 ? -off : off) / PL(known_crossing)[*found][1];
+		if (!(off <= worst) && worst == worst) {
+			worst = off;
+		}
+		++*found;
+	}
+	return worst;
 }
 #endif
 
 static real PL(replayed)(PL_TYPE *s, real worst)
 {
-    real y[PL_STATES];
-    uint64_t k = 0;
-    int i;
+	real y[PL_STATES];
+	uint64_t k = 0;
+	int i;
 #if PL_CROSSED > 0
-    int found = 0;
+	int found = 0;
 #endif
 #if PL_INPUTS > 0
-    real u[PL_INPUTS];
+	real u[PL_INPUTS];
 #endif
-    PL(begin_again)(s);
-    for (i = 0; i < PL_ROWS; i++) {
-        for (; k < PL(known_steps)[i]; k++) {
+	PL(begin_again)(s);
+	for (i = 0; i < PL_ROWS; i++) {
+		for (; k < PL(known_steps)[i]; k++) {
 #if PL_INPUTS > 0
-            PL(known_sample)(-(real)k, u);
+			PL(known_sample)(-(real)k, u);
 #endif
-            PL(step)(s PL_GIVEN);
+			PL(step)(s PL_GIVEN);
 #if PL_CROSSED > 0
-            worst = PL(crossed_as)(s, k, &found, worst);
+			worst = PL(crossed_as)(s, k, &found, worst);
 #endif
-        }
-        PL(get)(s, y);
-        worst = PL(deviation)(y, PL(known_states)[i], worst);
-    }
+		}
+		PL(get)(s, y);
+		worst = PL(deviation)(y, PL(known_states)[i], worst);
+	}
 #if PL_CROSSED > 0
-    if (found != PL_CROSSED) {
-        worst = (real)1e30;
-    }
+	if (found != PL_CROSSED) {
+		worst = (real)1e30;
+	}
 #endif
 #if PL_JUMPS
-    PL(set)(s, 0, PL(known_start));
-    PL(jump)(s, PL(known_steps)[PL_ROWS - 1]);
-    PL(get)(s, y);
-    worst = PL(deviation)(y, PL(known_states)[PL_ROWS - 1], worst);
+	PL(set)(s, 0, PL(known_start));
+	PL(jump)(s, PL(known_steps)[PL_ROWS - 1]);
+	PL(get)(s, y);
+	worst = PL(deviation)(y, PL(known_states)[PL_ROWS - 1], worst);
 #endif
 #if PL_AT
-    PL(begin_again)(s);
+	PL(begin_again)(s);
 #if PL_INPUTS > 0
-    PL(known_sample)(0, u);
+	PL(known_sample)(0, u);
 #endif
-    PL(at)(s PL_GIVEN, (real)0.5 * PL_KNOWN_H, y);
-    worst = PL(deviation)(y, PL(known_between), worst);
+	PL(at)(s PL_GIVEN, (real)0.5 * PL_KNOWN_H, y);
+	worst = PL(deviation)(y, PL(known_between), worst);
 #endif
-    return worst;
+	return worst;
 }
 
 real PL(selftest)(void)
 {
-    /* What a compiler makes of a copy of constants is not what it makes of loops over states: gcc 12 errs with AVX-512.
-     * Neither the instance nor the values that NAME_init is held against are known to it. */
-    const real *volatile from = PL(known_initial);
-    PL_TYPE s, *volatile at = &s;
-    real y[PL_STATES], begun[PL_STATES], worst = PL(replayed)(&s, 0);
-    PL(init)(at);
-    PL(get)(at, y);
-    PL(set)(at, 0, from);
-    PL(get)(at, begun);
-    return PL(deviation)(y, begun, worst);
+	/* What a compiler makes of a copy of constants is not what it makes of loops over states: gcc 12 errs with
+	 * AVX-512.
+	 * Neither the instance nor the values that NAME_init is held against are known to it. */
+	const real *volatile from = PL(known_initial);
+	PL_TYPE s, *volatile at = &s;
+	real y[PL_STATES], begun[PL_STATES], worst = PL(replayed)(&s, 0);
+	PL(init)(at);
+	PL(get)(at, y);
+	PL(set)(at, 0, from);
+	PL(get)(at, begun);
+	return PL(deviation)(y, begun, worst);
 }
 
 #include "undef.h"

@@ -46,9 +46,9 @@
 #if PL_INPUTS == 0
 static inline void PL(inputs_now)(const PL_TYPE *s, const real u[], real start[], real slope[])
 {
-    start[0] = slope[0] = 0; /* there are none */
-    (void)s;
-    (void)u;
+	start[0] = slope[0] = 0; /* there are none */
+	(void)s;
+	(void)u;
 }
 #endif
 
@@ -59,30 +59,30 @@ static inline void PL(inputs_now)(const PL_TYPE *s, const real u[], real start[]
 #if !PL_WRITTEN_OUT && (PL_PARTS || PL_OVER > 1 || PL_AT)
 static void PL(ahead)(const real c[PL_ORDER + 1][PL_COLUMNS], real theta, real gain[PL_STATES])
 {
-    int i, k;
-    for (i = 0; i < PL_STATES; i++) {
-        gain[i] = c[PL_ORDER][i];
-    }
-    for (k = PL_ORDER - 1; k > 0; k--) {
-        for (i = 0; i < PL_STATES; i++) {
-            gain[i] = gain[i] * theta + c[k][i];
-        }
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        gain[i] *= theta;
-    }
+	int i, k;
+	for (i = 0; i < PL_STATES; i++) {
+		gain[i] = c[PL_ORDER][i];
+	}
+	for (k = PL_ORDER - 1; k > 0; k--) {
+		for (i = 0; i < PL_STATES; i++) {
+			gain[i] = gain[i] * theta + c[k][i];
+		}
+	}
+	for (i = 0; i < PL_STATES; i++) {
+		gain[i] *= theta;
+	}
 }
 #endif
 
 #if !PL_WRITTEN_OUT && PL_ADAPTIVE
 static void PL(end)(const real c[PL_ORDER + 1][PL_COLUMNS], real m, real end[PL_STATES], real low[PL_STATES])
 {
-    real gain[PL_STATES];
-    int i;
-    PL(ahead)(c, m, gain);
-    for (i = 0; i < PL_STATES; i++) {
-        end[i] = pl_accumulate(c[0][i], gain[i], 0, &low[i]);
-    }
+	real gain[PL_STATES];
+	int i;
+	PL(ahead)(c, m, gain);
+	for (i = 0; i < PL_STATES; i++) {
+		end[i] = pl_accumulate(c[0][i], gain[i], 0, &low[i]);
+	}
 }
 #endif
 
@@ -97,17 +97,17 @@ static void PL(end)(const real c[PL_ORDER + 1][PL_COLUMNS], real m, real end[PL_
 /* y: theta after the start of the series that the instance has */
 static inline void PL(state_within)(const PL_TYPE *s, real theta, real y[PL_STATES])
 {
-    real gain[PL_STATES];
-    int i;
-    PL(ahead)((const real (*)[PL_COLUMNS])s->series, theta, gain);
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] = s->series[0][i] + (gain[i] + s->PL_BASE[i]);
-    }
+	real gain[PL_STATES];
+	int i;
+	PL(ahead)((const real (*)[PL_COLUMNS])s->series, theta, gain);
+	for (i = 0; i < PL_STATES; i++) {
+		y[i] = s->series[0][i] + (gain[i] + s->PL_BASE[i]);
+	}
 }
 #if !PL_WRITTEN_OUT && PL_INPUTS == 0
 static void PL(within)(PL_TYPE *s, real theta)
 {
-    PL(state_within)(s, theta, s->y);
+	PL(state_within)(s, theta, s->y);
 }
 #endif
 
@@ -117,11 +117,11 @@ static void PL(within)(PL_TYPE *s, real theta)
 /* Where the series ends that the instance has */
 static inline void PL(take_end)(PL_TYPE *s)
 {
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        s->y[i] = s->next[i];
-        s->low[i] = s->left[i];
-    }
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		s->y[i] = s->next[i];
+		s->low[i] = s->left[i];
+	}
 }
 #endif
 
@@ -129,12 +129,12 @@ static inline void PL(take_end)(PL_TYPE *s)
 /* Whether one of them is not finite: its difference from itself is not 0 */
 static inline int PL(is_lost)(const real y[PL_STATES])
 {
-    real sum = 0;
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        sum += y[i] - y[i];
-    }
-    return !(sum == 0);
+	real sum = 0;
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		sum += y[i] - y[i];
+	}
+	return !(sum == 0);
 }
 #endif
 
@@ -164,32 +164,32 @@ static inline int PL(is_lost)(const real y[PL_STATES])
 static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[])
 {
 #if PL_CONTACTS
-    PL(piece) p;
-    PL(inputs_now)(s, u, p.start, p.slope);
-    p.s = s;
-    p.y = s->y;
-    p.low = s->low;
-    p.segment = PL(segment_of)(s);
-    p.splits = PL_MAX_SPLITS;
-    PL(watch)(&p, &s->contact);
-    p.at.c = s->series[0];
-    p.at.terms = terms;
-    s->valid = (int)pl_events_end(&PL(events), &p.at, (real)s->valid, &p.splits);
+	PL(piece) p;
+	PL(inputs_now)(s, u, p.start, p.slope);
+	p.s = s;
+	p.y = s->y;
+	p.low = s->low;
+	p.segment = PL(segment_of)(s);
+	p.splits = PL_MAX_SPLITS;
+	PL(watch)(&p, &s->contact);
+	p.at.c = s->series[0];
+	p.at.terms = terms;
+	s->valid = (int)pl_events_end(&PL(events), &p.at, (real)s->valid, &p.splits);
 #else
-    real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)], next;
-    pl_crossing crossing = s->contact.last;
-    int splits = PL_MAX_SPLITS;
-    if (pl_series_switching_left(&PL(series_switching), s->series[0], terms, s->contact.interval, &crossing)) {
-        s->valid = 0;
-        return;
-    }
-    next = pl_series_switching_next(&PL(series_switching), s->series[0], terms, s->contact.interval, (real)s->valid,
-                                    &splits, &crossing,
-                           work);
-    if (splits < 0 || (next >= 0 && next < (real)s->valid)) {
-        s->valid = splits < 0 ? 0 : (int)next;
-    }
-    (void)u;
+	real work[PL_SERIES_SWITCHING_WORK(PL_ORDER)], next;
+	pl_crossing crossing = s->contact.last;
+	int splits = PL_MAX_SPLITS;
+	if (pl_series_switching_left(&PL(series_switching), s->series[0], terms, s->contact.interval, &crossing)) {
+		s->valid = 0;
+		return;
+	}
+	next = pl_series_switching_next(&PL(series_switching), s->series[0], terms, s->contact.interval, (real)s->valid,
+									&splits, &crossing,
+						   work);
+	if (splits < 0 || (next >= 0 && next < (real)s->valid)) {
+		s->valid = splits < 0 ? 0 : (int)next;
+	}
+	(void)u;
 #endif
 }
 #endif
@@ -198,150 +198,150 @@ static inline void PL(end_before_event)(PL_TYPE *s, const real u[], real terms[]
 static void PL(renew)(PL_TYPE *s, const real u[])
 {
 #if PL_SEGMENTS > 1
-    const real change = PL(change_after)(s, PL_SERVES * PL_H);
+	const real change = PL(change_after)(s, PL_SERVES * PL_H);
 #endif
-    const real when = PL(middle)(s);
-    const int *interval = NULL;
-    real terms[PL_ROOM(PL_TERMS)], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-    int i;
-    PL(inputs_now)(s, u, start, slope);
+	const real when = PL(middle)(s);
+	const int *interval = NULL;
+	real terms[PL_ROOM(PL_TERMS)], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
+	int i;
+	PL(inputs_now)(s, u, start, slope);
 #if PL_SWITCHING_FUNCTIONS > 0
-    interval = s->contact.interval;
+	interval = s->contact.interval;
 #endif
-    PL(measure)(s);
-    PL(expand_from)(s, start, slope, 0, when, PL(segment_of)(s), interval, s->y, s->series, terms);
-    for (i = PL_STATES; i < PL_STATES + PL_MEASURED; i++) {
-        if (pl_magnitude(s->series[0][i]) > s->scale[i]) {
-            s->scale[i] = pl_magnitude(s->series[0][i]);
-            s->unit[i] = 1 / s->scale[i];
-        }
-    }
-    i = s->most ? PL(reach)(s) : 0;
-    s->valid = i < s->most ? i : s->most;
-    s->most = s->valid ? 2 * s->valid : s->most;
+	PL(measure)(s);
+	PL(expand_from)(s, start, slope, 0, when, PL(segment_of)(s), interval, s->y, s->series, terms);
+	for (i = PL_STATES; i < PL_STATES + PL_MEASURED; i++) {
+		if (pl_magnitude(s->series[0][i]) > s->scale[i]) {
+			s->scale[i] = pl_magnitude(s->series[0][i]);
+			s->unit[i] = 1 / s->scale[i];
+		}
+	}
+	i = s->most ? PL(reach)(s) : 0;
+	s->valid = i < s->most ? i : s->most;
+	s->most = s->valid ? 2 * s->valid : s->most;
 #if PL_SEGMENTS > 1
-    if (change < (real)s->valid * PL_H) {
-        s->valid = (int)(change / PL_H);
-    }
+	if (change < (real)s->valid * PL_H) {
+		s->valid = (int)(change / PL_H);
+	}
 #endif
 #if PL_SWITCHING_FUNCTIONS > 0
-    if (s->valid) {
-        PL(end_before_event)(s, u, terms);
-        if (s->valid) {
-            s->contact.last.expression = -1;
-        }
-    }
+	if (s->valid) {
+		PL(end_before_event)(s, u, terms);
+		if (s->valid) {
+			s->contact.last.expression = -1;
+		}
+	}
 #endif
 #if PL_SLOPES
-    while (s->valid && !PL(meets)(s, start, slope, 0, when, PL(segment_of)(s), interval,
-                                  (const real (*)[PL_COLUMNS])s->series, (real)s->valid)) {
-        s->valid /= 2;
-    }
+	while (s->valid && !PL(meets)(s, start, slope, 0, when, PL(segment_of)(s), interval,
+							  (const real (*)[PL_COLUMNS])s->series, (real)s->valid)) {
+		s->valid /= 2;
+	}
 #endif
-    s->served = 0;
-    for (i = 0; i < PL_STATES; i++) {
-        s->base[i] = s->left[i] = s->low[i];
-    }
-    if (s->valid) {
-        PL(end)((const real (*)[PL_COLUMNS])s->series, (real)s->valid, s->next, s->left);
-        if (PL(is_lost)(s->next)) {
-            s->valid = s->most = 0;
-        }
+	s->served = 0;
+	for (i = 0; i < PL_STATES; i++) {
+		s->base[i] = s->left[i] = s->low[i];
+	}
+	if (s->valid) {
+		PL(end)((const real (*)[PL_COLUMNS])s->series, (real)s->valid, s->next, s->left);
+		if (PL(is_lost)(s->next)) {
+			s->valid = s->most = 0;
+		}
 #if PL_PROJECTS
-        if (s->valid && PL(project)(s, (real)s->valid * PL_H, s->next, s->left)) {
-            s->valid = s->most = 0;
-        }
+		if (s->valid && PL(project)(s, (real)s->valid * PL_H, s->next, s->left)) {
+			s->valid = s->most = 0;
+		}
 #endif
-    }
+	}
 }
 
 #if PL_INPUTS == 0
 /* A step whose end lies inside of what the series serves */
 static PL_APART void PL(inside)(PL_TYPE *s)
 {
-    PL(within)(s, (real)(s->served + 1));
-    s->served++;
+	PL(within)(s, (real)(s->served + 1));
+	s->served++;
 #if PL_CONSTRAINTS
-    s->status |= PL(project_rounded)(s, PL_H, s->y);
+	s->status |= PL(project_rounded)(s, PL_H, s->y);
 #endif
 #if PL_SWITCHING_FUNCTIONS > 0
-    s->contact.crossings = 0;
+	s->contact.crossings = 0;
 #endif
-    PL(pass_time)(s, NULL);
+	PL(pass_time)(s, NULL);
 }
 #endif
 
 /* The last step that a series serves, the first of the next one, or one that none serves */
 static PL_APART void PL(border)(PL_TYPE *s, const real u[])
 {
-    if (s->served == s->valid) {
+	if (s->served == s->valid) {
 #if PL_SWITCHING_FUNCTIONS > 0
-        if (!s->contact.placed) {
-            PL(locate)(s, u, &s->contact);
-        }
+		if (!s->contact.placed) {
+			PL(locate)(s, u, &s->contact);
+		}
 #endif
-        PL(renew)(s, u);
-    }
+		PL(renew)(s, u);
+	}
 #if PL_SWITCHING_FUNCTIONS > 0
-    s->contact.crossings = 0;
+	s->contact.crossings = 0;
 #endif
 #if PL_INPUTS == 0
-    if (s->served + 1 < s->valid) {
-        PL(inside)(s);
-        return;
-    }
+	if (s->served + 1 < s->valid) {
+		PL(inside)(s);
+		return;
+	}
 #endif
-    if (s->valid == 0) {
-        s->status |= PL(between)(s, u, !s->most, 1, s->y, s->low, PL_MET_BY(s));
-        s->most = 1;
-    } else {
-        s->served = s->valid;
-        PL(take_end)(s);
-    }
-    PL(pass_time)(s, u);
-    if (PL(change_loads)(s)) {
-        s->most = 0;
-    }
+	if (s->valid == 0) {
+		s->status |= PL(between)(s, u, !s->most, 1, s->y, s->low, PL_MET_BY(s));
+		s->most = 1;
+	} else {
+		s->served = s->valid;
+		PL(take_end)(s);
+	}
+	PL(pass_time)(s, u);
+	if (PL(change_loads)(s)) {
+		s->most = 0;
+	}
 }
 
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
 #if PL_INPUTS == 0
-    if (s->served + 1 < s->valid) {
-        PL(inside)(s);
-        return;
-    }
+	if (s->served + 1 < s->valid) {
+		PL(inside)(s);
+		return;
+	}
 #endif
-    PL(border)(s, u);
+	PL(border)(s, u);
 }
 
 #elif PL_OVER > 1 || !(PL_PARTS || PL_STRAIGHT)
 
 /* A series from here, over PL_OVER steps, and where it ends; 0: that is not finite */
 static inline int PL(go_over)(PL_TYPE *s, const real u[], real c[PL_ORDER + 1][PL_COLUMNS], real next[PL_STATES],
-                              real low[PL_STATES])
+							  real low[PL_STATES])
 {
-    real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
-    int i;
-    PL(inputs_now)(s, u, start, slope);
-    PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
-    for (i = 0; i < PL_STATES; i++) {
-        low[i] = s->low[i];
-    }
-    PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
+	real start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
+	int i;
+	PL(inputs_now)(s, u, start, slope);
+	PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
+	for (i = 0; i < PL_STATES; i++) {
+		low[i] = s->low[i];
+	}
+	PL(total)((const real (*)[PL_COLUMNS])c, s->y, next, low);
 #if PL_PROJECTS
-    s->status |= PL(project)(s, PL_OVER > 1 ? PL_OVER * PL_H : PL_H, next, low);
+	s->status |= PL(project)(s, PL_OVER > 1 ? PL_OVER * PL_H : PL_H, next, low);
 #endif
 #if PL_WATCHED
-    if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
-        s->status |= PL_INACCURATE;
-    }
+	if (!PL(is_accurate)(s, (const real (*)[PL_COLUMNS])c, 1)) {
+		s->status |= PL_INACCURATE;
+	}
 #endif
-    if (PL(is_lost)(next)) {
-        s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
-        return 0;
-    }
-    return 1;
+	if (PL(is_lost)(next)) {
+		s->status |= PL_CAUSE(s, 0, s->y, PL_LOST);
+		return 0;
+	}
+	return 1;
 }
 
 #if PL_OVER > 1
@@ -349,55 +349,55 @@ static inline int PL(go_over)(PL_TYPE *s, const real u[], real c[PL_ORDER + 1][P
 /* One that is not finite is not kept: all its steps leave the state as it is. */
 static void PL(renew)(PL_TYPE *s, const real u[])
 {
-    int i, k;
-    if (PL(go_over)(s, u, s->series, s->next, s->left)) {
-        return;
-    }
-    for (i = 0; i < PL_STATES; i++) {
-        s->next[i] = s->y[i];
-        s->left[i] = s->low[i];
-        for (k = 1; k <= PL_ORDER; k++) {
-            s->series[k][i] = 0;
-        }
-    }
+	int i, k;
+	if (PL(go_over)(s, u, s->series, s->next, s->left)) {
+		return;
+	}
+	for (i = 0; i < PL_STATES; i++) {
+		s->next[i] = s->y[i];
+		s->left[i] = s->low[i];
+		for (k = 1; k <= PL_ORDER; k++) {
+			s->series[k][i] = 0;
+		}
+	}
 }
 
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
-    if (s->served == 0) {
-        PL(renew)(s, u);
-    }
-    if (++s->served < PL_OVER) {
-        PL(within)(s, PL(part_of)[s->served - 1]);
+	if (s->served == 0) {
+		PL(renew)(s, u);
+	}
+	if (++s->served < PL_OVER) {
+		PL(within)(s, PL(part_of)[s->served - 1]);
 #if PL_CONSTRAINTS
-        s->status |= PL(project_rounded)(s, PL_H, s->y);
+		s->status |= PL(project_rounded)(s, PL_H, s->y);
 #endif
-    } else {
-        s->served = 0;
-        PL(take_end)(s);
+	} else {
+		s->served = 0;
+		PL(take_end)(s);
 #if PL_WATCHED
-        PL(measure)(s);
+		PL(measure)(s);
 #endif
-    }
-    PL(pass_time)(s, u);
+	}
+	PL(pass_time)(s, u);
 }
 
 #else
 
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
-    real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], low[PL_STATES];
-    int i;
-    if (PL(go_over)(s, u, c, next, low)) {
-        for (i = 0; i < PL_STATES; i++) {
-            s->y[i] = next[i];
-            s->low[i] = low[i];
-        }
+	real c[PL_ORDER + 1][PL_COLUMNS], next[PL_STATES], low[PL_STATES];
+	int i;
+	if (PL(go_over)(s, u, c, next, low)) {
+		for (i = 0; i < PL_STATES; i++) {
+			s->y[i] = next[i];
+			s->low[i] = low[i];
+		}
 #if PL_WATCHED
-        PL(measure)(s);
+		PL(measure)(s);
 #endif
-    }
-    PL(pass_time)(s, u);
+	}
+	PL(pass_time)(s, u);
 }
 
 #endif
@@ -407,14 +407,14 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 static inline void PL(serve)(PL_TYPE *s, const real u[])
 {
 #if PL_SWITCHING_FUNCTIONS > 0
-    PL(ready)(s, u, PL_MET_BY(s));
+	PL(ready)(s, u, PL_MET_BY(s));
 #endif
-    s->status |= PL(between)(s, u, 0, 1, s->y, s->low, PL_MET_BY(s));
+	s->status |= PL(between)(s, u, 0, 1, s->y, s->low, PL_MET_BY(s));
 #if PL_WATCHED
-    PL(measure)(s);
+	PL(measure)(s);
 #endif
-    PL(pass_time)(s, u);
-    PL(change_loads)(s);
+	PL(pass_time)(s, u);
+	PL(change_loads)(s);
 }
 
 #endif
@@ -426,22 +426,22 @@ static inline void PL(serve)(PL_TYPE *s, const real u[])
 static void PL(place)(PL_TYPE *s)
 {
 #if PL_REMAINDERS > 0
-    int i;
+	int i;
 #endif
 #if PL_ADAPTIVE
-    s->served = s->valid = s->most = 0;
+	s->served = s->valid = s->most = 0;
 #elif PL_OVER > 1
-    s->served = 0;
+	s->served = 0;
 #endif
 #if PL_REMAINDERS > 0
-    for (i = 0; i < PL_STATES + PL_MEASURED; i++) {
-        s->scale[i] = PL_ADAPTIVE && !PL_KINDS && i < PL_STATES ? PL_TRACE : 0;
-        s->unit[i] = 0;
-    }
-    PL(measure)(s);
+	for (i = 0; i < PL_STATES + PL_MEASURED; i++) {
+		s->scale[i] = PL_ADAPTIVE && !PL_KINDS && i < PL_STATES ? PL_TRACE : 0;
+		s->unit[i] = 0;
+	}
+	PL(measure)(s);
 #endif
 #if PL_SWITCHING_FUNCTIONS > 0
-    PL(forget)(&s->contact);
+	PL(forget)(&s->contact);
 #endif
 }
 #endif
@@ -453,53 +453,53 @@ static void PL(place)(PL_TYPE *s)
 static PL_APART void PL(state_at)(const PL_TYPE *s, const real u[], real tau, real y[PL_STATES])
 {
 #if PL_PARTS
-    real low[PL_STATES];
+	real low[PL_STATES];
 #if PL_SWITCHING_FUNCTIONS > 0
-    PL(contact) here = s->contact;
+	PL(contact) here = s->contact;
 #endif
 #else
-    real c[PL_ORDER + 1][PL_COLUMNS], gain[PL_STATES], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
+	real c[PL_ORDER + 1][PL_COLUMNS], gain[PL_STATES], start[PL_ROOM(PL_INPUTS)], slope[PL_ROOM(PL_INPUTS)];
 #endif
-    int i;
+	int i;
 #if PL_ADAPTIVE
-    const int fresh = !s->most;
-    if (s->served < s->valid) {
-        PL(state_within)(s, (real)s->served + tau / PL_H, y);
-        PL_PUT_BACK(s, tau, y);
-        return;
-    }
+	const int fresh = !s->most;
+	if (s->served < s->valid) {
+		PL(state_within)(s, (real)s->served + tau / PL_H, y);
+		PL_PUT_BACK(s, tau, y);
+		return;
+	}
 #else
-    const int fresh = 0;
+	const int fresh = 0;
 #endif
 #if PL_OVER > 1
-    if (s->served > 0) {
-        PL(state_within)(s, ((real)s->served + tau / PL_H) / PL_OVER, y);
-        PL_PUT_BACK(s, tau, y);
-        return;
-    }
+	if (s->served > 0) {
+		PL(state_within)(s, ((real)s->served + tau / PL_H) / PL_OVER, y);
+		PL_PUT_BACK(s, tau, y);
+		return;
+	}
 #endif
 #if PL_PARTS
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] = s->y[i];
-        low[i] = s->low[i];
-    }
+	for (i = 0; i < PL_STATES; i++) {
+		y[i] = s->y[i];
+		low[i] = s->low[i];
+	}
 #if PL_SWITCHING_FUNCTIONS > 0
-    PL(ready)(s, u, &here);
-    PL(between)(s, u, fresh, tau / PL_H, y, low, &here);
+	PL(ready)(s, u, &here);
+	PL(between)(s, u, fresh, tau / PL_H, y, low, &here);
 #else
-    PL(between)(s, u, fresh, tau / PL_H, y, low, NULL);
+	PL(between)(s, u, fresh, tau / PL_H, y, low, NULL);
 #endif
 #else
-    PL(inputs_now)(s, u, start, slope);
-    PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
-    PL(ahead)((const real (*)[PL_COLUMNS])c, tau / (PL_OVER * PL_H), gain);
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] = s->y[i] + (gain[i] + s->low[i]);
-    }
-    if (tau > 0) { /* now it is on them, and stays to the last bit */
-        PL_PUT_BACK(s, tau, y);
-    }
-    (void)fresh;
+	PL(inputs_now)(s, u, start, slope);
+	PL(expand_from)(s, start, slope, 0, 0, 0, NULL, s->y, c, NULL);
+	PL(ahead)((const real (*)[PL_COLUMNS])c, tau / (PL_OVER * PL_H), gain);
+	for (i = 0; i < PL_STATES; i++) {
+		y[i] = s->y[i] + (gain[i] + s->low[i]);
+	}
+	if (tau > 0) { /* now it is on them, and stays to the last bit */
+		PL_PUT_BACK(s, tau, y);
+	}
+	(void)fresh;
 #endif
 }
 #endif

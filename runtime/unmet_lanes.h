@@ -23,22 +23,22 @@
 /* Of the lanes in region k those that meet nothing: y is then at their end */
 PL_LANES_INLINE pl_lanes_truth PL(lanes_in_region)(int k, const pl_lanes *x, pl_lanes *y)
 {
-    pl_lanes end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
-    pl_lanes_truth here = pl_lanes_equal(y[PL_STATES], pl_lanes_all(k));
-    int i;
-    if (pl_lanes_flags(here) == 0) {
-        return here;
-    }
-    PL_UNROLL
-    for (i = 0; i < PL_STATES; i++) {
-        end[i] = x[i]; /* of a region that cannot occur nothing else comes */
-    }
-    here = pl_lanes_both(here, PL(lanes_keeps_all)(&PL(switching), k, x, end, size, place));
-    PL_UNROLL
-    for (i = 0; i < PL_STATES; i++) {
-        y[i] = pl_lanes_choose(here, end[i], y[i]);
-    }
-    return here;
+	pl_lanes end[PL_SIZE], size[PL_SIZE], place[PL_SIZE];
+	pl_lanes_truth here = pl_lanes_equal(y[PL_STATES], pl_lanes_all(k));
+	int i;
+	if (pl_lanes_flags(here) == 0) {
+		return here;
+	}
+	PL_UNROLL
+	for (i = 0; i < PL_STATES; i++) {
+		end[i] = x[i]; /* of a region that cannot occur nothing else comes */
+	}
+	here = pl_lanes_both(here, PL(lanes_keeps_all)(&PL(switching), k, x, end, size, place));
+	PL_UNROLL
+	for (i = 0; i < PL_STATES; i++) {
+		y[i] = pl_lanes_choose(here, end[i], y[i]);
+	}
+	return here;
 }
 
 #define PL_CASE(k) kept = k < PL_REGIONS ? pl_lanes_either(kept, PL(lanes_in_region)(k, x, y)) : kept;
@@ -47,26 +47,26 @@ PL_LANES_INLINE pl_lanes_truth PL(lanes_in_region)(int k, const pl_lanes *x, pl_
 /* One step of the lanes in which it is sure that no guard is met.  Behind the states y has the region. */
 PL_LANES_INLINE pl_lanes_truth PL(lanes_step)(pl_lanes *y, const pl_lanes *factor, const real *now)
 {
-    pl_lanes x[PL_SIZE];
-    pl_lanes_truth kept = pl_lanes_below(pl_lanes_all(0), pl_lanes_all(-1));
-    int i;
-    PL_UNROLL
-    for (i = 0; i < PL_SIZE; i++) {
-        x[i] = i < PL_STATES ? y[i] : pl_lanes_all(now[i < PL_STATES ? 0 : i - PL_STATES]);
-    }
-    PL_CASES(0)
+	pl_lanes x[PL_SIZE];
+	pl_lanes_truth kept = pl_lanes_below(pl_lanes_all(0), pl_lanes_all(-1));
+	int i;
+	PL_UNROLL
+	for (i = 0; i < PL_SIZE; i++) {
+		x[i] = i < PL_STATES ? y[i] : pl_lanes_all(now[i < PL_STATES ? 0 : i - PL_STATES]);
+	}
+	PL_CASES(0)
 #if PL_REGIONS > 3
-    PL_CASES(3)
-    PL_CASES(6)
+	PL_CASES(3)
+	PL_CASES(6)
 #endif
 #if PL_REGIONS > 9
-    PL_CASES(9)
-    PL_CASES(12)
-    PL_CASE(15)
+	PL_CASES(9)
+	PL_CASES(12)
+	PL_CASE(15)
 #endif
-    (void)factor;
-    (void)now;
-    return kept;
+	(void)factor;
+	(void)now;
+	return kept;
 }
 
 #include "undef.h"

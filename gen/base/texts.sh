@@ -12,7 +12,7 @@ shift
 text() {
 	case $1 in
 		*.js | *.css) sed '2,${/^ *\/\*.*\*\/$/d; /^ *\/\*/,/\*\/$/d;}; s/^ *//' "$1" ;;
-		*) cat "$1" ;;
+		*) expand -i -t 4 "$1" ;;       # as emitted C is indented
 	esac
 }
 

@@ -63,8 +63,6 @@ const void *const pl_counts = &pl_counted;
 
 /* The same with friction and impacts */
 #define PL_GUARDED(m, words) PL_TAKES_BOTH((m)->size * ((words) * (m)->size + 3 + (m)->switches))
-#define pl_guards_meet(m, g, t, x, c, e, w) (PL_GUARDED(m, 2), pl_counted.pieces++, pl_counted.events++, \
-	pl_counted.terms += (uint64_t)((m)->degree * (m)->size * (m)->size), pl_guards_meet(m, g, t, x, c, e, w))
 #define pl_guards_step(m, t, x, c, e, w) (PL_GUARDED(m, 1), pl_guards_step(m, t, x, c, e, w))
 #define pl_guards_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), PL_PIECE(m, c, pl_guards_advance(m, t, x, c, e, w)))
 #define pl_guardsf_advance(m, t, x, c, e, w) (PL_GUARDED(m, 1), PL_PIECE(m, c, pl_guardsf_advance(m, t, x, c, e, w)))

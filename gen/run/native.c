@@ -53,6 +53,8 @@ static char *model_text(const struct step *step, enum running_with with)
 	model.request.many.batch = model.request.selftest = model.request.own_math = false;
 	tangent.model = &model;
 	start_text(&p);
+	if (with & WITH_COUNTS)                 /* as a Cortex-M4 takes its steps: see search.h */
+		fputs("#define PL_AS_ON_BOARDS 1\n", p.to);
 	emit_code(p.to, &tangent, "", NULL, with & WITH_RHS);
 	char *text = rewritten(text_printed(&p), print_included, model.name);
 	if (model.request.single)
