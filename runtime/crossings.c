@@ -269,8 +269,8 @@ void pl_switching_advance(const pl_switching *m, real tau, real *x, pl_contact *
 #if defined WITH_DERIVATIVES && !defined STATE_IS_COMPENSATED
 
 /* Pieces between crossings that are known need no look at what happens in them. */
-void pl_switching_follow_d(const pl_switching *m, int count, const pl_crossing *crossing, real *x, pl_contact *c,
-						   pl_variation *v)
+void pl_switching_follow(const pl_switching *m, int count, const pl_crossing *crossing, real *x, pl_contact *c,
+						 pl_variation *v)
 {
 	const real *const end = v->work + (v->degree + 3) * m->size; /* of vary_piece */
 	instant at;

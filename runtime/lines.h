@@ -103,8 +103,12 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
 /* ---- the same of like elements in lanes, `groups` of them: each sum in its order ---- */
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
-#define PL_LANES_AT(a, i, g) pl_lanes_load((a) + (i) * PL_NEXT + (g) * PL_AT_ONCE, PL_AT_ONCE)
-#define PL_LANES_PAIR(a, i, b, j, g) (PL_LANES_AT(a, i, g) * PL_LANES_AT(b, j, g))
+/* Products of rows i of a and j of b, of group g */
+PL_LANES_INLINE pl_lanes PL(lanes_pair)(const real *a, int i, const real *b, int j, size_t g)
+{
+	return pl_lanes_load(a + i * PL_NEXT + g * PL_AT_ONCE, PL_AT_ONCE) *
+		   pl_lanes_load(b + j * PL_NEXT + g * PL_AT_ONCE, PL_AT_ONCE);
+}
 
 PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, int k, real *to, const size_t groups)
 {
@@ -116,21 +120,21 @@ PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, int k, real *
 	for (g = 0; g < groups; g++) {
 		sum[g] = more[g] = pl_lanes_all(0);
 		if (i == j && i > 0) {
-			sum[g] = PL_LANES_PAIR(a, i, b, i, g);
+			sum[g] = PL(lanes_pair)(a, i, b, i, g);
 		}
 	}
 	i -= i == j;
 	for (j = k - i; i > 0 && k <= 5; i--, j++) {
 		PL_LANES_UNROLL
 		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL_LANES_PAIR(a, i, b, j, g) + PL_LANES_PAIR(a, j, b, i, g);
+			sum[g] = sum[g] + PL(lanes_pair)(a, i, b, j, g) + PL(lanes_pair)(a, j, b, i, g);
 		}
 	}
 	for (; i > 0; i--, j++) {
 		PL_LANES_UNROLL
 		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL_LANES_PAIR(one, i, other, j, g);
-			more[g] = more[g] + PL_LANES_PAIR(one, j, other, i, g);
+			sum[g] = sum[g] + PL(lanes_pair)(one, i, other, j, g);
+			more[g] = more[g] + PL(lanes_pair)(one, j, other, i, g);
 		}
 	}
 	PL_LANES_UNROLL
@@ -152,22 +156,22 @@ PL_LANES_INLINE void PL(inner_square_lanes)(const real *a, int k, real *to, cons
 		for (; i > 1; i -= 2, j += 2) {
 			PL_LANES_UNROLL
 			for (g = 0; g < groups; g++) {
-				sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
-				more[g] = more[g] + PL_LANES_PAIR(a, i - 1, a, j + 1, g);
+				sum[g] = sum[g] + PL(lanes_pair)(a, i, a, j, g);
+				more[g] = more[g] + PL(lanes_pair)(a, i - 1, a, j + 1, g);
 			}
 		}
 	}
 	for (; i > 0; i--, j++) {
 		PL_LANES_UNROLL
 		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL_LANES_PAIR(a, i, a, j, g);
+			sum[g] = sum[g] + PL(lanes_pair)(a, i, a, j, g);
 		}
 	}
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
 		sum[g] = 2 * (sum[g] + more[g]);
 		if (k % 2 == 0) {
-			sum[g] = PL_LANES_PAIR(a, k / 2, a, k / 2, g) + sum[g];
+			sum[g] = PL(lanes_pair)(a, k / 2, a, k / 2, g) + sum[g];
 		}
 		pl_lanes_store(to + g * PL_AT_ONCE, sum[g], PL_AT_ONCE);
 	}
@@ -208,8 +212,6 @@ static void PL(inners_of_turn)(const real *table, int k, real *to)
 	}
 }
 #undef PL_AT_ONCE
-#undef PL_LANES_AT
-#undef PL_LANES_PAIR
 #endif
 
 #if PL_SOLVES
