@@ -99,7 +99,7 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
 }
 #endif
 
-#if PL_ACROSS > 0
+#if PL_RUNS > 0
 /* ---- the same of like elements in lanes, `groups` of them: each sum in its order ---- */
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
@@ -212,6 +212,13 @@ static void PL(inners_of_turn)(const real *table, int k, real *to)
 	}
 }
 #undef PL_AT_ONCE
+#elif PL_ACROSS > 0 /* no products of this loop are of rows that it has */
+static inline void PL(inners_of_turn)(const real *table, int k, real *to)
+{
+	(void)table;
+	(void)k;
+	(void)to;
+}
 #endif
 
 #if PL_SOLVES

@@ -437,11 +437,13 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 #if PL_SHARED && PL_FEW > 0
 	if (known >= 0) {
 		pl_switching_follow_d(&PL(switching), known, crossing, x, contact, &v);
-	} else
+	} else {
+		PL(search_step)(s, tau, x, contact, crossing, &v);
+	}
 #else
 	(void)known;
-#endif
 	PL(search_step)(s, tau, x, contact, crossing, &v);
+#endif
 	for (i = 0; i < PL_STATES; i++) {
 		ds->scale[PL_PLACE(i)] = scale[i];
 	}

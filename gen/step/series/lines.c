@@ -185,7 +185,8 @@ void find_runs(struct lines *l)
 	for (int i = 0; i < count; i++)
 		run[i] = product[i];
 	const int runs = join_products(count, run);
-	qsort(product, (size_t)count, sizeof *product, by_rows);
+	if (count > 0)
+		qsort(product, (size_t)count, sizeof *product, by_rows);
 	for (int i = 0, k = 0; i < runs; k += run[i++].count) {
 		if (run[i].count < FEWEST_ALIKE)
 			continue;
