@@ -259,6 +259,8 @@ void emit_device(FILE *to, const struct step *step, const char *options, const c
 		emit_delay_declarations(&e);
 	emit_declared_tables(&e);
 	emit_motion_of(&e, false);
+	if (e.model->delays && step->series.emitted)
+		emit_if_any(e.prints->at, &e);
 	if (has_jump(&e))
 		emit_jump(&e);
 	(e.model->delays ? emit_delays_on_device : emit_whole_kernel)(&e, target);

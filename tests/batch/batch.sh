@@ -564,4 +564,11 @@ by_itself tests/relative/row.spec 'a block of more than 16 states is summed over
 by_itself tests/forms/carried.spec 'its states are kept as differences'
 sed 's/0.2\*u)/0.2*held)/' "$root/tests/peaks/peaks.spec" >"$work/jumps.spec"
 specs=$work by_itself jumps.spec 'output pa is the peak of what jumps with the samples'
+# Samples of delayed inputs around whole steps, held and ramps
+printf '%s\n' 'model late' 'coord x' 'input p, q' 'init x = 0.3' \
+	"x'' + 30*x + friction(x', 0.6, 0.8) = q + p(t - 0.053)" \
+	'stop between x, ground at 0.5 restitution 0.4' 'step 0.02' >"$work/late.spec"
+sed 's/^input.*/& hold first/' "$work/late.spec" >"$work/late_ramp.spec"
+specs=$work kernel late.spec
+specs=$work kernel late_ramp.spec
 tap_end
