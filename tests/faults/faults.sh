@@ -3,7 +3,8 @@
 #
 # faults.sh [-j COPIES] [-w FOLDER] [--check | --refresh] [NAME ...]: faults of which a suite is known to notice them,
 # all or those named.
-# Each NAME.patch beside this script changes one file of gen, runtime or host. Its head says:
+# A case `=== NAME` of the lists beside this script, TOPIC.cases, is a patch that changes one file of gen, runtime or
+# host. Its head says:
 #   # suite: TEST            the meson test that has to fail
 #   # run: PROGRAM ARGUMENT  only this of it, where the whole takes long: the program by its path in the build folder,
 #                            run in the root of the tree
@@ -13,9 +14,9 @@
 #                            is not noticed
 #   # says: ...              what a user would see
 # Each is applied to a copy of the tree and taken out again; the suite must pass before and fail with it, and is ended
-# where it first does. The seconds told are of processor time. --check: do all apply? --refresh writes the patches anew
-# where lines or files have moved. The copies stay in FOLDER, where there is one, for the next time; no two runs at a
-# time may share it.
+# where it first does. The seconds told are of processor time. --check: do all apply? --refresh writes the patches anew,
+# where lines or files have moved; a line before and behind only where what they take out stands elsewhere too. The
+# copies stay in FOLDER, where there is one, for the next time; no two runs at a time may share it.
 # faults.sh --first COMMAND ...: a test by TAP, ended where it first fails; for `meson test --wrapper`.
 set -u
 here=$(cd "$(dirname "$0")" && pwd) || exit 99
@@ -63,16 +64,6 @@ while [ $# -gt 0 ]; do
 	shift
 done
 
-if [ $# -eq 0 ]; then
-	for patch in "$here"/*.patch; do
-		patch=${patch##*/}
-		set -- "$@" "${patch%.patch}"
-	done
-fi
-for name; do
-	[ -f "$here/$name.patch" ] || { echo "faults.sh: no fault $name" >&2; exit 2; }
-done
-
 work=$(mktemp -d "${TMPDIR:-/tmp}/plgen.XXXXXX") || exit 99
 trap 'rm -rf "$work"' EXIT
 trap 'exit 99' HUP INT TERM
@@ -81,10 +72,22 @@ if [ -z "$folder" ]; then
 fi
 mkdir -p "$folder" && folder=$(cd "$folder" && pwd) || exit 99
 
+# Each fault as a file of its own
+patches=$work/patches
+mkdir "$patches" && awk -v into="$patches/" -v kind=patch -v names="$work/names" -f "$here/../cases.awk" \
+	"$here"/*.cases || exit 99
+if [ $# -eq 0 ]; then
+	# shellcheck disable=SC2046
+	set -- $(cat "$work/names")
+fi
+for name; do
+	[ -f "$patches/$name.patch" ] || { echo "faults.sh: no fault $name" >&2; exit 2; }
+done
+
 # head_of NAME WORD: what the head says of it
 head_of()
 {
-	sed -n "s/^# $2: *//p; /^+++ /q" "$here/$1.patch"
+	sed -n "s/^# $2: *//p; /^+++ /q" "$patches/$1.patch"
 }
 
 # accepts TREE FILE PATCH: with the context as it is
@@ -96,14 +99,14 @@ accepts()
 # file_of TREE NAME: the file that the patch is for: by its path, by its name in another room, or by what it says
 file_of()
 {
-	wanted=$(sed -n 's|^+++ b/||p' "$here/$2.patch")
-	if accepts "$1" "$wanted" "$here/$2.patch"; then
+	wanted=$(sed -n 's|^+++ b/||p' "$patches/$2.patch")
+	if accepts "$1" "$wanted" "$patches/$2.patch"; then
 		echo "$wanted"
 		return
 	fi
 	for file in $(cd "$1" && { find gen runtime host -name "${wanted##*/}"
 		find gen runtime host -name '*.[ch]'; }); do
-		if accepts "$1" "$file" "$here/$2.patch"; then
+		if accepts "$1" "$file" "$patches/$2.patch"; then
 			echo "$file"
 			return
 		fi
@@ -118,7 +121,7 @@ file_of()
 heads()
 {
 	for name; do
-		echo "$here/$name.patch"
+		echo "$patches/$name.patch"
 	done | xargs awk 'FNR == 1 { tell(); suite = says = file = "-" }
 		/^# suite: *[^ ]/ && file == "-" { suite = $3 }
 		/^# says: *[^ ]/ && file == "-" { says = "says" }
@@ -141,7 +144,7 @@ check_all()
 		why=
 		[ "$suite" != - ] || why='its head names no suite'
 		[ "$says" != - ] || why='its head says nothing'
-		accepts "$root" "$file" "$here/$name.patch" || [ -n "$(file_of "$root" "$name")" ] ||
+		accepts "$root" "$file" "$patches/$name.patch" || [ -n "$(file_of "$root" "$name")" ] ||
 			why='it applies to no file'
 		if [ -z "$why" ]; then
 			echo "ok $number - $name"
@@ -155,15 +158,42 @@ check_all()
 	return $failed
 }
 
+# unmistakable PATCH: whether it takes out lines, each of which stands only once in what can be changed
+unmistakable()
+{
+	sed -n '/^@@ /,$s/^-//p' "$1" >"$work/lines"
+	[ -s "$work/lines" ] && while IFS= read -r line; do
+		[ "$(grep -cxF -e "$line" "$work/sources")" -eq 1 ] || return 1
+	done <"$work/lines"
+}
+
 # refresh NAME: the same fault, as a patch of the tree as it is
 refresh()
 {
 	file=$(file_of "$root" "$1") || { echo "$1: applies to no file"; return 1; }
 	cp "$root/$file" "$work/old" && cp "$work/old" "$work/new" || return 1
-	patch -s -f -F 0 "$work/new" "$here/$1.patch" || return 1
-	sed '/^\(---\|+++\) /,$d' "$here/$1.patch" >"$work/patch"
-	diff -u --label "a/$file" --label "b/$file" "$work/old" "$work/new" | sed 1d >>"$work/patch"
-	cmp -s "$work/patch" "$here/$1.patch" || { cp "$work/patch" "$here/$1.patch" && echo "$1: $file"; }
+	patch -s -f -F 0 "$work/new" "$patches/$1.patch" || return 1
+	around=1
+	! unmistakable "$patches/$1.patch" || around=0
+	sed '/^\(---\|+++\) /,$d' "$patches/$1.patch" >"$work/patch"
+	diff -U "$around" --label "a/$file" --label "b/$file" "$work/old" "$work/new" | sed 1d >>"$work/patch"
+	cmp -s "$work/patch" "$patches/$1.patch" || { cp "$work/patch" "$patches/$1.patch" && echo "$1: $file"; }
+}
+
+# refresh_all NAME ...: and then the lists, of what they have
+refresh_all()
+{
+	(cd "$root" && find gen runtime host -name '*.[ch]' -exec cat {} +) >"$work/sources"
+	for name; do
+		refresh "$name"
+	done
+	for list in "$here"/*.cases; do
+		sed -n 's/^=== //p' "$list" | while read -r name; do
+			echo "=== $name"
+			cat "$patches/$name.patch"
+		done >"$work/list"
+		cmp -s "$work/list" "$list" || cp "$work/list" "$list"
+	done
 }
 
 # ---- are they noticed? ----
@@ -225,7 +255,7 @@ verdict()
 	passes_without "$1" "$2" || { echo "SUITE FAILS WITHOUT IT"; return; }
 	file=$(file_of "$1" "$2") || { echo "APPLIES TO NO FILE"; return; }
 	cp "$1/$file" "$1.kept"
-	patch -s -f -F 0 "$1/$file" "$here/$2.patch"
+	patch -s -f -F 0 "$1/$file" "$patches/$2.patch"
 	run_suite "$1" "$2" "$1.log"
 	case $?$(head_of "$2" notice) in
 	1 | 1build) echo noticed ;;
@@ -304,6 +334,6 @@ run_all()
 
 case $mode in
 check) check_all "$@" ;;
-refresh) for name; do refresh "$name"; done ;;
+refresh) refresh_all "$@" ;;
 run) run_all "$@" ;;
 esac
