@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Specs that stand in one file as files of their own: `=== NAME` begins a case, whose lines become NAME.spec (NAME.KIND),
-# those behind a line `---` NAME.REST. The blank lines before the next case belong to none. Prints the names, to the file
-# of NAMES if it is given.
+# Specs that stand in one file as files of their own: `=== NAME` begins a case, whose lines become NAME.spec, or
+# NAME.KIND, those behind a line `---` NAME.REST. The blank lines before the next case belong to none. Prints the names,
+# to the file of NAMES if it is given.
 #
 #     awk [-v into=FOLDER/] [-v only=NAME] [-v kind=KIND] [-v rest=REST] [-v names=NAMES] -f cases.awk FILE.cases ...
 /^=== / {

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The format of cases.c, read: a text is a piece of the file, which stays in memory. */
-#define _GNU_SOURCE     /* vasprintf */
+#define _GNU_SOURCE     /* vasprintf, open_memstream */
 #include "cases.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -187,6 +188,56 @@ static void trim(struct text *said)
 		said->length--;
 }
 
+/* ---- what is shown of a place ---- */
+
+/* The line of that number, without its end */
+static struct text line_of(const struct one *c, int number)
+{
+	const char *line = c->spec.at, *end = line + c->spec.length;
+	while (line && line < end && --number > 0)
+		line = (const char *)memchr(line, '\n', (size_t)(end - line)) + 1;
+	if (!line || line >= end)
+		bail_out("%s says something of a line that it does not have", c->name);
+	return (struct text){ line, (size_t)((const char *)memchr(line, '\n', (size_t)(end - line)) - line) };
+}
+
+/* The line, and a caret below its character `column` */
+static void show_place(FILE *to, struct text line, int column)
+{
+	fprintf(to, "%.*s\n", (int)line.length, line.at);
+	for (size_t i = 0, characters = 0; i < line.length && characters < (size_t)column; i++) {
+		const bool begins = ((unsigned char)line.at[i] & 0xc0) != 0x80;
+		characters += begins;
+		if (begins && characters < (size_t)column)
+			putc(line.at[i] == '\t' ? '\t' : ' ', to);
+	}
+	fputs("^\n", to);
+}
+
+/* A line that begins with a place stands for what is said of that place of the spec. */
+static void complete(struct one *c)
+{
+	size_t length;
+	char *text;
+	FILE *to = open_memstream(&text, &length);
+	if (!to)
+		bail_out("out of memory");
+	const char *end = c->said.at + c->said.length;
+	for (const char *line = c->said.at, *next; line < end; line = next) {
+		int number, column, after = 0;
+		next = (const char *)memchr(line, '\n', (size_t)(end - line)) + 1;
+		const bool placed = isdigit((unsigned char)*line) &&
+				    sscanf(line, "%d:%d:%n", &number, &column, &after) == 2 && line[after] == ' ';
+		if (placed)
+			fprintf(to, "%s.spec:", c->name);
+		fwrite(line, 1, (size_t)(next - line), to);
+		if (placed)
+			show_place(to, line_of(c, number), column);
+	}
+	fclose(to);
+	c->said = (struct text){ text, length };
+}
+
 /* parts of /a/b/parts.cases */
 static struct topic *topic_of(const char *path)
 {
@@ -208,6 +259,8 @@ void read_topic(const char *path, struct cases *cases)
 		read_line(&r, line, (size_t)(next - line));
 	}
 	end_case(&r);
-	for (int i = first; i < cases->count; i++)
+	for (int i = first; i < cases->count; i++) {
 		trim(&cases->one[i].said);
+		complete(&cases->one[i]);
+	}
 }
