@@ -22,8 +22,8 @@
  * === the name, options (in '' where they have blanks or are empty), -> the exit status where it is not 1;
  *     the spec: it is written to NAME.spec, which comes last on the command line; no line at all: none is named.
  *     Where bytes matter, or it would be long, a shell script that prints it, with #!/bin/sh as its first line.
- * --- all of standard error; nothing: nothing may be said. Empty lines may follow. `3:5: error: ...` has the spec's name
- *     in front and line 3 of the spec and a caret under its 5th character behind it, which do not stand there.
+ * --- all of standard error; nothing: nothing may be said. Empty lines may follow. `3:5: error: ...` has the spec's
+ *     name in front and line 3 of the spec and a caret under its 5th character behind it, which do not stand there.
  * +++ FILE, before ---: a file beside the spec; before the first case: beside every spec of the topic.
  * Lines before the first case that begin with # are comments.
  *
