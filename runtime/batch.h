@@ -513,17 +513,7 @@ void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 }
 
 #if PL_FACTORS > 0
-/* ---- NAME_many, by which programs step instances of any model ---- */
-
-static void PL(many_init)(void *to, size_t count, real *y, real *factors, real *peak)
-{
-	PL_INSTANCES *const b = (PL_INSTANCES *)to;
-	b->count = count;
-	b->y = y;
-	b->factors = factors;
-	b->peak = peak;
-	PL(batch_init)(b);
-}
+/* ---- of many.h ---- */
 
 #if PL_RAMPS
 static void PL(many_hold)(void *b, const real *u)
@@ -532,57 +522,24 @@ static void PL(many_hold)(void *b, const real *u)
 }
 #endif
 
-static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
+static int PL(many_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c, real *out)
 {
-	PL_INSTANCES *const b = (PL_INSTANCES *)to;
-	PL(coeffs) c = PL(nominal);
 	PL_TYPE one;
 	size_t i;
-#if PL_TUNED
-	int status = PL(retune)(&c, params, c.h);
-#else
-	int status = PL(retune)(&c, params, PL_H);
-#endif
-	if (status == 0) {
-		status = PL(batch_use)(b, j, &c);
+	const int status = PL(batch_use)(b, j, c);
+	if (status != 0) {
+		return status;
 	}
-	if (status == 0) {
-		PL(batch_take)(b, j, &one);
-		PL(use)(&one, &c);
-		PL(out)(&one, out);
-	}
-	for (i = 0; i < PL_OUTPUTS && status == 0 && b->peak; i++) {
+	PL(batch_take)(b, j, &one);
+	PL(use)(&one, c);
+	PL(out)(&one, out);
+	for (i = 0; i < PL_OUTPUTS && b->peak; i++) {
 		b->peak[i * b->count + j] = pl_magnitude(out[i]);
 	}
-	return status;
+	return 0;
 }
-
-static void PL(many_run)(void *b, size_t n, const real *u, real *out)
-{
-	(void)u;
-	PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
-}
-
-static int PL(many_status)(const void *b, size_t j)
-{
-	return PL(batch_status)((const PL_INSTANCES *)b, j);
-}
-
-static void PL(many_share)(void *b, size_t n, const real *u, real *now)
-{
-	(void)u;
-	PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
-}
-
-const pl_many PL(many) = {
-	sizeof(PL_INSTANCES), PL_ROWS, PL_FACTORS, PL(many_init),
-#if PL_RAMPS
-	PL(many_hold),
-#else
-	NULL,
-#endif
-	PL(many_retune), PL(many_run), PL(many_status), PL_NOW, PL(many_share)
-};
 #endif
 
+#define PL_DRIVES (PL_FACTORS > 0)
+#include "many.h"
 #include "undef.h"

@@ -65,20 +65,6 @@ void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
 	PL(batch_begin)(b, j, &one);
 }
 
-void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
-{
-	PL_TYPE one;
-	PL(batch_take)(b, j, &one);
-	PL(get)(&one, y);
-}
-
-int PL(batch_status)(const PL_INSTANCES *b, size_t j)
-{
-	PL_TYPE one;
-	PL(batch_take)(b, j, &one);
-	return PL(status)(&one);
-}
-
 static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
 {
 	real now[PL_OUTPUTS];
@@ -139,17 +125,7 @@ void PL(batch_share)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *now)
 }
 
 #if PL_PARAMS > 0
-/* ---- NAME_many, as of batch.h ---- */
-
-static void PL(many_init)(void *to, size_t count, real *y, real *factors, real *peak)
-{
-	PL_INSTANCES *const b = (PL_INSTANCES *)to;
-	(void)factors;
-	b->count = count;
-	b->y = y;
-	b->peak = peak;
-	PL(batch_init)(b);
-}
+/* ---- of many.h ---- */
 
 #if PL_RAMPS
 static void PL(many_hold)(void *to, const real *u)
@@ -166,51 +142,18 @@ static void PL(many_hold)(void *to, const real *u)
 }
 #endif
 
-static int PL(many_retune)(void *to, size_t j, const real *params, real *out)
+static int PL(many_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c, real *out)
 {
-	PL_INSTANCES *const b = (PL_INSTANCES *)to;
-	PL(coeffs) c = PL(nominal);
-#if PL_TUNED
-	const int status = PL(retune)(&c, params, c.h);
-#else
-	const int status = PL(retune)(&c, params, PL_H);
-#endif
-	if (status == 0) {
-		PL_TYPE one;
-		PL(batch_take)(b, j, &one);
-		PL(use)(&one, &c);
-		PL(out)(&one, out);
-		PL(batch_begin)(b, j, &one);
-	}
-	return status;
+	PL_TYPE one;
+	PL(batch_take)(b, j, &one);
+	PL(use)(&one, c);
+	PL(out)(&one, out);
+	PL(batch_begin)(b, j, &one);
+	return 0;
 }
-
-static void PL(many_run)(void *b, size_t n, const real *u, real *out)
-{
-	(void)u;
-	PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
-}
-
-static int PL(many_status)(const void *b, size_t j)
-{
-	return PL(batch_status)((const PL_INSTANCES *)b, j);
-}
-
-static void PL(many_share)(void *b, size_t n, const real *u, real *now)
-{
-	(void)u;
-	PL(batch_share)((PL_INSTANCES *)b, n PL_GIVEN, now);
-}
-
-const pl_many PL(many) = {
-	sizeof(PL_INSTANCES), PL_ROWS, 0, PL(many_init),
-#if PL_RAMPS
-	PL(many_hold),
-#else
-	NULL,
-#endif
-	PL(many_retune), PL(many_run), PL(many_status), PL_INPUTS, PL(many_share)
-};
 #endif
 
+#define PL_NOW PL_INPUTS
+#define PL_DRIVES (PL_PARAMS > 0)
+#include "many.h"
 #include "undef.h"

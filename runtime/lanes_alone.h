@@ -243,20 +243,6 @@ void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
 	PL(batch_begin)(b, j, &one);
 }
 
-void PL(batch_get)(const PL_INSTANCES *b, size_t j, real y[PL_STATES])
-{
-	PL_TYPE one;
-	PL(batch_take)(b, j, &one);
-	PL(get)(&one, y);
-}
-
-int PL(batch_status)(const PL_INSTANCES *b, size_t j)
-{
-	PL_TYPE one;
-	PL(batch_take)(b, j, &one);
-	return PL(status)(&one);
-}
-
 #if PL_EVENTS
 /* ---- steps by themselves ---- */
 

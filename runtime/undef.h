@@ -114,11 +114,11 @@
 #undef PL_SLOPED
 #undef PL_SWITCHING_TABLES
 #undef PL_DRIVEN
+#undef PL_DRIVES
 #undef PL_EACH
 #undef PL_ELAPSED
 #undef PL_END
 #undef PL_ENDED
-#undef PL_ENTRIES
 #undef PL_DIFFERENCES
 #undef PL_EVENT_COLUMNS
 #undef PL_EVENT_ORDER
@@ -236,7 +236,6 @@
 #undef PL_NOMINAL
 #undef PL_NORMAL
 #undef PL_NOTHING
-#undef PL_NOW
 #undef PL_NO_CHANGE
 #undef PL_OF
 #undef PL_OPEN_END
@@ -287,7 +286,6 @@
 #undef PL_SET
 #undef PL_STEADY_IN
 #undef PL_STEADY
-#undef PL_SHARED
 #undef PL_SHARE_OF_FIRST
 #undef PL_SHORTER
 #undef PL_SHORTEST
@@ -348,7 +346,6 @@
 #undef PL_WAY
 #undef PL_WAYS
 #undef PL_FORCINGS
-#undef PL_WHOLE
 #undef PL_WIDTH
 #undef PL_WORK
 #undef PL_WORTH

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* NAME_at of steps in normal modes, against the equations by hand in long double: its order inside a step, the first
  * ones and those after changes too; it meets the steps; what is exact once nothing changes; the rotating beam. */
+#include "alike.h"
 #include "frames.h"
 #include "spun_float_pl.h"
 #include "steps_variants.h"
@@ -10,13 +11,6 @@
 
 enum { FRACTIONS = 3 };
 static const double fraction[FRACTIONS] = {0.21, 0.5, 0.83};
-
-static void *fresh(const pl_model *m)
-{
-	void *state = calloc(1, m->size);
-	m->init(state);
-	return state;
-}
 
 static const pl_model *model_of(const char *name, int step)
 {

@@ -98,49 +98,6 @@ static void follows(const struct subject *s, const pl_model *m)
 	ok(good, "%s: steps, their middles and ends (%.2g, %.2g, %.2g)", m->name, worst.step, worst.middle, worst.end);
 }
 
-/* ---- bit for bit ---- */
-
-static void same_bits(const pl_model *m)
-{
-	const size_t inputs = (size_t)m->inputs, outputs = (size_t)m->outputs;
-	double *u = calloc(STEPS * inputs + 1, sizeof *u), *out = calloc(STEPS * outputs, sizeof *out);
-	double *again = calloc(STEPS * outputs, sizeof *again), y[MOST];
-	void *state = fresh(m), *saved = calloc(1, m->size), *other = fresh(m);
-	for (size_t i = 0; i < STEPS * inputs; i++)
-		u[i] = random_number();
-	m->run(state, STEPS, u, out);
-	m->init(state);                                             /* renews what the run left */
-	if (m->hold)
-		m->hold(state, (const double[MOST]){0});
-	for (size_t k = 0; k < STEPS; k++) {
-		m->at(state, u + k * inputs, 0.3 * m->h, y);            /* leaves no trace */
-		m->step(state, u + k * inputs);
-		m->out(state, again + k * outputs);
-		if (k + 1 == HALF)
-			memcpy(saved, state, m->size);
-	}
-	ok(memcmp(out, again, STEPS * outputs * sizeof *out) == 0, "%s: run and step, init after a run", m->name);
-	memset(again, 0, STEPS * outputs * sizeof *again);
-	m->run(saved, HALF, u + HALF * inputs, again);
-	ok(memcmp(out + HALF * outputs, again, HALF * outputs * sizeof *out) == 0, "%s: a copy restores", m->name);
-	m->get(saved, y);                                           /* of what was before set nothing is left */
-	m->set(saved, 0.25, y);
-	m->set(other, 0.25, y);
-	if (m->hold) {
-		m->hold(saved, u);
-		m->hold(other, u);
-	}
-	m->run(saved, HALF, u, out);
-	m->run(other, HALF, u, again);
-	ok(memcmp(out, again, HALF * outputs * sizeof *out) == 0, "%s: set renews", m->name);
-	free(u);
-	free(out);
-	free(again);
-	free(state);
-	free(saved);
-	free(other);
-}
-
 /* ---- orders ---- */
 
 /* The largest error at the end of six seconds, steps being h but for the first few */
@@ -259,30 +216,9 @@ static void in_float(void)
 
 /* ---- what ends ---- */
 
-/* After the last good step the status has `bit`, and the state is finite and stays. */
-static void ends(const char *name, int bit, double from, double to)
+static void ends_of(const char *name, int bit, double from, double to)
 {
-	const pl_model *m = variant_of(steps, "%s", name)->model;
-	void *state = fresh(m);
-	double y[MOST], later[MOST];
-	bool good = true;
-	for (int k = 0; m->status(state) == 0 && k < 1000; k++)
-		m->step(state, NULL);
-	const double when = m->time(state);
-	m->get(state, y);
-	m->step(state, NULL);
-	m->get(state, later);
-	for (int i = 0; i < m->states; i++)
-		good = good && isfinite(y[i]) && isfinite(later[i]);
-	if (!good)
-		note("%s: state %g, later %g", name, y[0], later[0]);
-	if ((m->status(state) & bit) != bit)
-		note("%s: status %d, expected bit %d", name, m->status(state), bit);
-	good = good && (m->status(state) & bit) == bit;
-	good = close_to(when, (from + to) / 2, (to - from) / 2, "%s: the time at which it ends", name) && good;
-	m->init(state);
-	ok(good && m->status(state) == 0, "%s: status %d, at %g s, and none after init", name, bit, when);
-	free(state);
+	ends(variant_of(steps, "%s", name)->model, bit, from, to, false);
 }
 
 int main(void)
@@ -305,11 +241,11 @@ int main(void)
 	starts("relax_e12_radau_0", count, 1e-12, 1);
 	starts("relax_e12_auto_0", count, 1e-12, 1);
 	in_float();
-	ends("pole_radau_0", PL_NOT_FINITE, 0.55, 0.65);
-	ends("pole_auto_0", PL_NOT_FINITE, 0.55, 0.65);
-	ends("root_radau_0", PL_NOT_FINITE, 1.05, 1.15);
-	ends("root_auto_0", PL_NOT_FINITE, 1.05, 1.15);
-	ends("hurried_radau_0", PL_TOO_MANY_STEPS, 79, 91);
-	ends("hurried_auto_0", PL_TOO_MANY_STEPS, 79, 91);
+	ends_of("pole_radau_0", PL_NOT_FINITE, 0.55, 0.65);
+	ends_of("pole_auto_0", PL_NOT_FINITE, 0.55, 0.65);
+	ends_of("root_radau_0", PL_NOT_FINITE, 1.05, 1.15);
+	ends_of("root_auto_0", PL_NOT_FINITE, 1.05, 1.15);
+	ends_of("hurried_radau_0", PL_TOO_MANY_STEPS, 79, 91);
+	ends_of("hurried_auto_0", PL_TOO_MANY_STEPS, 79, 91);
 	return tap_end();
 }

@@ -53,20 +53,6 @@ void solve(const struct subject *s, const pl_model *m, real from, real to, const
 
 /* ---- steps ---- */
 
-double random_number(void)
-{
-	static unsigned seed = 1;
-	seed = seed * 1103515245u + 12345u;
-	return (double)(seed >> 8) / 8388608 - 1;
-}
-
-void *fresh(const pl_model *m)
-{
-	void *state = calloc(1, m->size);
-	m->init(state);
-	return state;
-}
-
 void look(double *worst, const pl_model *m, const double *found, const real *expected, const double *most)
 {
 	for (int i = 0; i < m->states; i++)

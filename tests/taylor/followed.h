@@ -3,10 +3,10 @@
 #ifndef FOLLOWED_H
 #define FOLLOWED_H
 
+#include "alike.h"
 #include "gragg.h"
-#include "plrt.h"
 
-enum { STEPS = 60, HALF = STEPS / 2, MOST = 40, MOST_CHANGES = 5 };
+enum { STEPS = 60, MOST = 40, MOST_CHANGES = 5 };
 
 struct subject {
 	const char *name;
@@ -25,9 +25,6 @@ equations *field(const struct subject *s);
 
 /* y from `from` to `to`, through what changes: up to it the formula before, of what begins there nothing */
 void solve(const struct subject *s, const pl_model *m, real from, real to, const real *u, real *y);
-
-double random_number(void);             /* from -1 up to 1, the same in each run */
-void *fresh(const pl_model *m);         /* an instance at its start; to be freed */
 
 /* *worst <- the largest difference over `most`, if that is above it; what is not a number is */
 void look(double *worst, const pl_model *m, const double *found, const real *expected, const double *most);

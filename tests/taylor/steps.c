@@ -67,61 +67,6 @@ static void follows(const struct subject *s, const pl_model *m, double bound)
 	ok(good, "%s: steps, their middles and ends (%.2g, %.2g, %.2g)", m->name, worst.step, worst.middle, worst.end);
 }
 
-/* ---- bit for bit ---- */
-
-static void samples(const pl_model *m, double *u)
-{
-	for (int i = 0; i < STEPS * m->inputs; i++)
-		u[i] = random_number();
-}
-
-static void same_bits(const pl_model *m)
-{
-	const size_t inputs = (size_t)m->inputs, outputs = (size_t)m->outputs;
-	double *u = calloc(STEPS * inputs + 1, sizeof *u), *out = calloc(STEPS * outputs, sizeof *out);
-	double *again = calloc(STEPS * outputs, sizeof *again), y[MOST];
-	void *state = fresh(m), *saved = calloc(1, m->size);
-	bool good = true;
-	samples(m, u);
-	m->run(state, STEPS, u, out);
-	m->init(state);                                             /* renews what the run left */
-	if (m->hold)
-		m->hold(state, (const double[MOST]){0});
-	for (size_t k = 0; k < STEPS; k++) {
-		m->step(state, u + k * inputs);
-		m->out(state, again + k * outputs);
-		if (k + 1 == HALF)
-			memcpy(saved, state, m->size);
-	}
-	good = memcmp(out, again, STEPS * outputs * sizeof *out) == 0;
-	ok(good, "%s: run and step, init after a run", m->name);
-	memset(again, 0, STEPS * outputs * sizeof *again);
-	memcpy(state, saved, m->size);
-	m->run(state, HALF, u + HALF * inputs, again);
-	ok(memcmp(out + HALF * outputs, again, HALF * outputs * sizeof *out) == 0, "%s: a copy restores", m->name);
-	/* set: of what was before nothing is left */
-	m->get(saved, y);
-	m->set(state, 0.25, y);
-	m->set(saved, 0.25, y);
-	memset(again, 0, STEPS * outputs * sizeof *again);
-	void *other = fresh(m);
-	m->set(other, 0.25, y);
-	for (int i = 0; i < 3; i++)
-		if (m->hold)
-			m->hold(i == 0 ? state : i == 1 ? saved : other, u);
-	m->run(state, HALF, u, out);
-	m->run(saved, HALF, u, again);
-	good = memcmp(out, again, HALF * outputs * sizeof *out) == 0;
-	m->run(other, HALF, u, again);
-	ok(memcmp(out, again, HALF * outputs * sizeof *out) == 0 && good, "%s: set renews", m->name);
-	free(u);
-	free(out);
-	free(again);
-	free(state);
-	free(saved);
-	free(other);
-}
-
 /* ---- orders ---- */
 
 /* The largest error at `points` equal times, over the largest start; from rest itself */
@@ -423,70 +368,38 @@ static void holds_energy(const char *name, real (*energy)(const double *y), stru
 
 /* ---- what ends ---- */
 
-/* After the last good step, between these times, the status has `bit`. The state is finite then and stays so; where
- * `same`, it is that of the last good step. */
-static void ends(const char *name, int bit, double from, double to, bool same)
+static void ends_of(const char *name, int bit, double from, double to, bool same)
 {
-	enum { MORE = 3 };
-	const pl_model *m = variant_of(steps, "%s", name)->model;
-	void *state = fresh(m);
-	double y[MOST], last[MOST];
-	bool good = true;
-	m->get(state, y);
-	for (int k = 0; m->status(state) == 0 && k < 1000; k++) {
-		memcpy(last, y, sizeof last);
-		m->step(state, NULL);
-		m->get(state, y);
-	}
-	const double when = m->time(state);
-	const int status = m->status(state);
-	good = close_to(when, (from + to) / 2, (to - from) / 2, "%s: the time at which it ends", name);
-	for (int k = 0; k <= MORE; k++) {
-		bool finite = true;
-		for (int i = 0; i < m->states; i++)
-			finite = finite && isfinite(y[i]) && (!same || y[i] == last[i]);
-		if (!finite)
-			note("%s, %d steps later: state %g %g, before %g %g", name, k, y[0], y[m->states - 1], last[0],
-				last[m->states - 1]);
-		good = good && finite;
-		m->step(state, NULL);
-		m->get(state, y);
-	}
-	if (status != bit)
-		note("%s: status %d, expected %d", name, status, bit);
-	good = good && status == bit;
-	m->init(state);
-	ok(good && m->status(state) == 0, "%s: status %d, at %g s, and none after init", name, bit, when);
-	free(state);
+	ends(variant_of(steps, "%s", name)->model, bit, from, to, same);
 }
 
 static void endings(void)
 {
-	ends("pole_taylor_0", PL_NOT_FINITE, 0.55, 0.65, false);
-	ends("pole_fixed_0", PL_INACCURATE, 0.25, 0.55, false);
-	ends("pole_over_0", PL_INACCURATE, 0.05, 0.55, false);
-	ends("root_over_0", PL_NOT_FINITE, 1.05, 1.35, true);
-	ends("burst_over_0", PL_NOT_FINITE, 0.85, 1.65, true);
-	ends("burst_over_watched_0", PL_INACCURATE, 0.65, 1.05, false);
-	ends("stuck_over_0", PL_NOT_FINITE, 0.05, 0.15, true);
-	ends("stuck_over_watched_0", PL_NOT_FINITE | PL_INACCURATE, 0.05, 0.15, true);
-	ends("root_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
-	ends("root_fixed_0", PL_NOT_FINITE, 1.05, 1.25, true);
-	ends("falling_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
-	ends("falling_fixed_0", PL_NOT_FINITE, 1.05, 1.25, true);
-	ends("origin_taylor_0", PL_NOT_FINITE, 0.05, 0.15, true);
-	ends("origin_fixed_0", PL_NOT_FINITE, 0.05, 0.15, true);
-	ends("stuck_taylor_0", PL_NOT_FINITE, 0.05, 0.15, true);
-	ends("stuck_fixed_0", PL_NOT_FINITE, 0.05, 0.15, true);
-	ends("stuck_watched_0", PL_NOT_FINITE | PL_INACCURATE, 0.05, 0.15, true);
-	ends("burst_taylor_0", PL_NOT_FINITE, 0.95, 1.15, false);
-	ends("burst_fixed_0", PL_NOT_FINITE, 0.95, 1.65, true);
-	ends("burst_watched_0", PL_INACCURATE, 0.85, 1.05, false);
-	ends("flood_taylor_0", PL_NOT_FINITE, 11.75, 11.95, false);
-	ends("flood_fixed_0", PL_NOT_FINITE, 11.75, 11.95, true);
-	ends("stiff_taylor_0", PL_TOO_MANY_STEPS, 0.05, 0.15, false);
-	ends("coarse_0", PL_INACCURATE, 0.45, 0.55, false);
-	ends("coarser_0", PL_INACCURATE, 0.45, 0.55, false);
+	ends_of("pole_taylor_0", PL_NOT_FINITE, 0.55, 0.65, false);
+	ends_of("pole_fixed_0", PL_INACCURATE, 0.25, 0.55, false);
+	ends_of("pole_over_0", PL_INACCURATE, 0.05, 0.55, false);
+	ends_of("root_over_0", PL_NOT_FINITE, 1.05, 1.35, true);
+	ends_of("burst_over_0", PL_NOT_FINITE, 0.85, 1.65, true);
+	ends_of("burst_over_watched_0", PL_INACCURATE, 0.65, 1.05, false);
+	ends_of("stuck_over_0", PL_NOT_FINITE, 0.05, 0.15, true);
+	ends_of("stuck_over_watched_0", PL_NOT_FINITE | PL_INACCURATE, 0.05, 0.15, true);
+	ends_of("root_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
+	ends_of("root_fixed_0", PL_NOT_FINITE, 1.05, 1.25, true);
+	ends_of("falling_taylor_0", PL_NOT_FINITE, 1.05, 1.15, false);
+	ends_of("falling_fixed_0", PL_NOT_FINITE, 1.05, 1.25, true);
+	ends_of("origin_taylor_0", PL_NOT_FINITE, 0.05, 0.15, true);
+	ends_of("origin_fixed_0", PL_NOT_FINITE, 0.05, 0.15, true);
+	ends_of("stuck_taylor_0", PL_NOT_FINITE, 0.05, 0.15, true);
+	ends_of("stuck_fixed_0", PL_NOT_FINITE, 0.05, 0.15, true);
+	ends_of("stuck_watched_0", PL_NOT_FINITE | PL_INACCURATE, 0.05, 0.15, true);
+	ends_of("burst_taylor_0", PL_NOT_FINITE, 0.95, 1.15, false);
+	ends_of("burst_fixed_0", PL_NOT_FINITE, 0.95, 1.65, true);
+	ends_of("burst_watched_0", PL_INACCURATE, 0.85, 1.05, false);
+	ends_of("flood_taylor_0", PL_NOT_FINITE, 11.75, 11.95, false);
+	ends_of("flood_fixed_0", PL_NOT_FINITE, 11.75, 11.95, true);
+	ends_of("stiff_taylor_0", PL_TOO_MANY_STEPS, 0.05, 0.15, false);
+	ends_of("coarse_0", PL_INACCURATE, 0.45, 0.55, false);
+	ends_of("coarser_0", PL_INACCURATE, 0.45, 0.55, false);
 }
 
 static void pushed(real t, const real *y, const real *u, real *dydt)
