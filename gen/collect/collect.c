@@ -39,12 +39,16 @@ bool is_plain_zero(const struct value *value)
 	return is_scalar(value) && value->cell[0]->terms == 0;
 }
 
+struct form *scalar_of(const struct value *value, const struct node *node, const char *note)
+{
+	if (!is_scalar(value))
+		error(node->start, note, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
+	return value->cell[0];
+}
+
 static struct form *collect_scalar(struct collector *c, struct node *node)
 {
-	struct value *value = collect_node(c, node);
-	if (value->rows != 1 || value->columns != 1)
-		error(node->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
-	return value->cell[0];
+	return scalar_of(collect_node(c, node), node, NULL);
 }
 
 /* ---- what cannot be treated ---- */
@@ -298,11 +302,9 @@ static struct value *collect_product(struct collector *c, struct node *node)
 
 static struct form *collect_power(struct collector *c, struct node *node)
 {
-	const struct value *raised = collect_node(c, node->child[0]);
-	if (!is_scalar(raised))
-		error(node->child[0]->start, "a power is of a number: [q[1]^2; q[2]^2] has those of two components",
-		      "expected a scalar, found a %d x %d matrix", raised->rows, raised->columns);
-	struct form *base = raised->cell[0], *exponent = collect_scalar(c, node->child[1]);
+	struct form *base = scalar_of(collect_node(c, node->child[0]), node->child[0],
+				      "a power is of a number: [q[1]^2; q[2]^2] has those of two components");
+	struct form *exponent = collect_scalar(c, node->child[1]);
 	if (!is_constant(exponent) && keeps(c))
 		return kept_power(c, node, base, exponent);
 	if (!is_constant(exponent))

@@ -320,6 +320,8 @@ struct value {                      /* a scalar is 1 x 1 */
 struct value *collect(struct collector *collector, struct node *node);
 struct value *collect_constants(struct collector *collector, struct node *node);
 bool is_plain_zero(const struct value *value);
+/* Its only cell; one that has others is an error at the node, with a note or NULL */
+struct form *scalar_of(const struct value *value, const struct node *node, const char *note);
 void collect_constant(struct collector *collector, struct node *node, mpq_ptr number);
 void param_value(const struct symbol *param, mpq_ptr value); /* collected before */
 void forget_lets(const struct spec *spec);
@@ -345,5 +347,7 @@ int pieces_of_call(const struct node *node, struct straight **list);
 struct form *function_of_form(struct collector *c, struct node *node, struct form *x);
 /* that divides its arguments' range, of one cell of each */
 struct form *piecewise_cell(struct collector *c, struct node *node, struct form *const *x);
+_Noreturn void refuse_force_below(const struct node *force);           /* of friction, below 0 */
+_Noreturn void refuse_velocity_of_friction(const struct node *friction);
 
 #endif

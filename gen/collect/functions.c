@@ -53,9 +53,7 @@ static void check_friction(struct collector *c, const struct node *node, struct 
 		if (is_constant(x[i]))
 			constant_value(c, x[i], rest);
 		if (is_constant(x[i]) && mpq_sgn(rest) < 0)
-			error(node->child[i]->start,
-			      "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
-			      "the force of friction is below 0");
+			refuse_force_below(node->child[i]);
 	}
 	if (node->children > 2 && is_constant(x[1]) && is_constant(x[2])) {
 		constant_value(c, x[1], force);
@@ -63,6 +61,18 @@ static void check_friction(struct collector *c, const struct node *node, struct 
 			error(node->child[2]->start, "friction(v, F, S): F while it slides, S up to which it sticks",
 			      "friction that sticks holds no less than it brakes while it slides");
 	}
+}
+
+void refuse_force_below(const struct node *force)
+{
+	error(force->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
+	      "the force of friction is below 0");
+}
+
+void refuse_velocity_of_friction(const struct node *friction)
+{
+	error(friction->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
+	      "the velocity of friction is linear in velocities");
 }
 
 /* Dry friction: a force, which only scheme exact can treat, where it switches; elsewhere it says so */
@@ -77,8 +87,7 @@ static struct form *friction_form(struct collector *c, const struct node *node, 
 	/* for all time, what moves with x may be an atom of time: each segment has been looked at */
 	if (!has_coordinate(x[0]) ||
 	    (x[0]->term[x[0]->terms - 1].basis.kind == BASIS_ATOM && !c->whole_time && !node->follows))
-		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
-		      "the velocity of friction is linear in velocities");
+		refuse_velocity_of_friction(node);
 	bool none = node->children == 2 && x[1]->terms == 0 && !node->follows;
 	return none ? NEW(struct form) : kept_call(c, node, FN_FRICTION, node->children, x);
 }

@@ -182,15 +182,37 @@ tape_ref formula(struct formulas *f, const struct form *form)
 
 /* ---- equations that are solved by lists ---- */
 
+const char *factor_by_lists(const struct emitter *e, struct listed_matrix m)
+{
+	return spell(e, "$n_factor_by_lists(%d, %d, $n_first_%s_%d, $n_before_%s_%d, matrix_by_%d);", m.n, m.symmetric,
+		     m.lists, m.number, m.lists, m.number, m.number);
+}
+
+const char *solve_by_lists(const struct emitter *e, struct listed_matrix m, int rights, int solved)
+{
+	return spell(e, "$n_solve_by_lists(%d, %d, $n_first_%s_%d, $n_before_%s_%d, matrix_by_%d, solved_by_%d);", m.n,
+		     rights, m.lists, m.number, m.lists, m.number, m.number, solved);
+}
+
+void emit_factor_lists(const struct emitter *e, struct listed_matrix m, const int *first, const int *before)
+{
+	say(e, "\n/* Factors of a matrix of %d equations: where the columns of each row begin that are not 0, and "
+	       "these columns */\n", m.n);
+	emit_integers(e, "short", format("first_%s_%d", m.lists, m.number), m.n + 1, first);
+	emit_integers(e, "short", format("before_%s_%d", m.lists, m.number), first[m.n] ? first[m.n] : 1, before);
+}
+
+static struct listed_matrix matrix_of(const struct tape_system *s)
+{
+	return (struct listed_matrix){ s->n, s->symmetric, "by", s->matrix };
+}
+
 static const char *solve_lists(const void *context, const struct tape_system *s)
 {
 	struct formulas *f = *(struct formulas *const *)context;
-	const struct emitter *e = f->e;
 	*MORE(f->system, f->systems) = *s;
-	const char *factor = spell(e, "$n_factor_by_lists(%d, %d, $n_first_by_%d, $n_before_by_%d, matrix_by_%d); ",
-				   s->n, s->symmetric, s->matrix, s->matrix, s->matrix);
-	return spell(e, "%s$n_solve_by_lists(%d, %d, $n_first_by_%d, $n_before_by_%d, matrix_by_%d, solved_by_%d);",
-		     s->factored ? "" : factor, s->n, s->rights, s->matrix, s->matrix, s->matrix, s->number);
+	const char *solve = solve_by_lists(f->e, matrix_of(s), s->rights, s->number);
+	return s->factored ? solve : format("%s %s", factor_by_lists(f->e, matrix_of(s)), solve);
 }
 
 void solve_formulas_by_lists(struct formulas *f, int count, const struct form *const *form)
@@ -216,10 +238,7 @@ static void emit_factor_columns(const struct emitter *e, const struct tape_syste
 	for (int i = 0; i < n * n; i++)
 		filled[i] = s->M[i]->terms || s->M[i % n * n + i / n]->terms;
 	const int *before = factor_columns(n, filled, first);
-	say(e, "\n/* Factors of M, of %d equations: where the columns of each row begin that are not 0, and these "
-	       "columns */\n", n);
-	emit_integers(e, "short", format("first_by_%d", s->matrix), n + 1, first);
-	emit_integers(e, "short", format("before_by_%d", s->matrix), first[n] ? first[n] : 1, before);
+	emit_factor_lists(e, matrix_of(s), first, before);
 }
 
 void emit_solved_tables(const struct formulas *f)

@@ -26,6 +26,11 @@ tape_ref formula_sizes(struct formulas *f, const struct form *form); /* the sum 
 void solve_formulas_by_lists(struct formulas *f, int count, const struct form *const *form);
 void emit_solved_locals(const struct formulas *f);
 void emit_solved_tables(const struct formulas *f);
+/* One such matrix: the columns of its factors' rows are in first_LISTS_NUMBER and before_LISTS_NUMBER */
+struct listed_matrix { int n; bool symmetric; const char *lists; int number; };
+const char *factor_by_lists(const struct emitter *e, struct listed_matrix m);
+const char *solve_by_lists(const struct emitter *e, struct listed_matrix m, int rights, int solved);
+void emit_factor_lists(const struct emitter *e, struct listed_matrix m, const int *first, const int *before);
 void formulas_finish(struct formulas *f);                         /* once all is set */
 struct reads reads_of_formulas(const struct formulas *f);         /* of what is finished, but for <math.h> */
 void note_reads(struct reads *r, const struct emitter *e, const struct tape *t); /* what it reads, too */

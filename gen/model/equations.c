@@ -67,24 +67,21 @@ static void collect_element(void *context)
 		work->segment_equations->element[work->index] = work->terms[component_of(element->from)];
 		return;
 	}
-	struct value *value = collect(&b->collector, element->value);
-	if (value->rows != 1 || value->columns != 1)
-		error(element->value->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows,
-		      value->columns);
+	struct form *value = scalar_of(collect(&b->collector, element->value), element->value, NULL);
 	struct form *form;
 	if (element->kind == ELEMENT_FORCE || element->kind == ELEMENT_FRICTION) {
-		form = form_sum(NEW(struct form), value->cell[0], element->kind == ELEMENT_FORCE);
+		form = form_sum(NEW(struct form), value, element->kind == ELEMENT_FORCE);
 	} else {
 		int order = element->kind == ELEMENT_MASS ? 2 : element->kind == ELEMENT_DAMPER ? 1 : 0;
-		if (!is_constant(value->cell[0]) && !is_of_params(value->cell[0]))
+		if (!is_constant(value) && !is_of_params(value))
 			error(element->value->start, "what moves belongs in an equation, or in a force",
 			      "a mass, spring or damper needs a constant");
 		form = coordinate_form(&b->model->frame, component_of(element->from), order);
 		if (element->to)
 			form = form_sum(form, coordinate_form(&b->model->frame, component_of(element->to), order),
 					true);
-		form = is_constant(value->cell[0]) ? form_product(&b->collector, value->cell[0], form)
-						   : kept_product(&b->collector, element->value, value->cell[0], form);
+		form = is_constant(value) ? form_product(&b->collector, value, form)
+						   : kept_product(&b->collector, element->value, value, form);
 	}
 	work->segment_equations->element[work->index] = form;
 }

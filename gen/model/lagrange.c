@@ -190,12 +190,9 @@ static void add_gradient(struct building *b, const struct form *form, const stru
 			add_to(&force[j], s.by[order][j], NULL);
 }
 
-static const struct form *scalar_of(const struct value *value, const struct node *node)
+static const struct form *energy_of(const struct value *value, const struct node *node)
 {
-	if (value->rows != 1 || value->columns != 1)
-		error(node->start, "dot(v, v) is the square of a vector, sum(v) the sum of its components",
-		      "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
-	return value->cell[0];
+	return scalar_of(value, node, "dot(v, v) is the square of a vector, sum(v) the sum of its components");
 }
 
 static void check_energy(struct building *b, const struct energy *energy, const struct form *form)
@@ -264,12 +261,12 @@ static void add_energy(struct building *b, const struct energy *energy, struct s
 	struct collector *c = &b->collector;
 	for (int i = 0; i < (energy->point ? energy->point->children : 0); i++) {
 		struct node *point = energy->point->child[i], *value = energy->value->child[i];
-		const struct form *r = scalar_of(collect(c, point), point), *F = scalar_of(collect(c, value), value);
+		const struct form *r = energy_of(collect(c, point), point), *F = energy_of(collect(c, value), value);
 		add_gradient(b, r, form_difference(NEW(struct form), F), 0, force);
 	}
 	if (energy->point)
 		return;
-	const struct form *form = scalar_of(collect(c, energy->value), energy->value);
+	const struct form *form = energy_of(collect(c, energy->value), energy->value);
 	check_energy(b, energy, form);
 	if (energy->kind == 'T' || energy->kind == 'V') {
 		const struct form **total = &s->energy[energy->kind == 'V'];

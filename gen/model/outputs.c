@@ -497,9 +497,7 @@ static void check_drawn(void *context)
 {
 	struct output_work *work = context;
 	collect_left(work);
-	if (work->value->rows * work->value->columns != 1)
-		error(work->node->start, "a place is two numbers: (x, y)", "expected a scalar, found a %d x %d matrix",
-		      work->value->rows, work->value->columns);
+	scalar_of(work->value, work->node, "a place is two numbers: (x, y)");
 }
 
 /* What drawings read is what outputs may read. */

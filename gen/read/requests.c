@@ -151,6 +151,11 @@ static bool names_definition(const struct parser *p)
 	return p->token.kind == TOKEN_NAME && text[0] == '=' && text[1] != '=';
 }
 
+static _Noreturn void refuse_fixed(struct place at, const char *what)
+{
+	error(at, "an operator fixes t, coordinates, their first derivatives and lets", "%s cannot be fixed", what);
+}
+
 /* What an operator can fix: t, a coordinate, its first derivative, a let */
 static struct fixed *read_fixed_name(struct parser *p)
 {
@@ -162,14 +167,11 @@ static struct fixed *read_fixed_name(struct parser *p)
 	struct node *name = time ? NULL : resolve_name(p, token);
 	struct symbol *symbol = time ? NULL : name->symbol;
 	if (!time && !symbol)
-		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
-		      "'%s' cannot be fixed", token.name);
+		refuse_fixed(token.at, format("'%s'", token.name));
 	if (symbol && symbol->kind != SYMBOL_COORD && symbol->kind != SYMBOL_LET)
-		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
-		      "%s '%s' cannot be fixed", symbol_kind(symbol), symbol->name);
+		refuse_fixed(token.at, format("%s '%s'", symbol_kind(symbol), symbol->name));
 	if (token.primes > 1 || (name && name->primes > 1))
-		error(token.at, "an operator fixes t, coordinates, their first derivatives and lets",
-		      "an acceleration cannot be fixed");
+		refuse_fixed(token.at, "an acceleration");
 	for (int i = 0; i < spec->operators.fixeds; i++) {
 		const struct fixed *other = &spec->operators.fixed[i];
 		bool same = other->symbol == symbol && (!name || (other->primes == name->primes &&

@@ -107,14 +107,14 @@ void emit_series_tape(const struct emitter *e, const struct recurrences *r)
 
 /* ---- a long one ---- */
 
+static struct listed_matrix matrix_of(const struct linear_equations *q)
+{
+	return (struct listed_matrix){ q->n, is_symmetric_system(q), "of", q->number };
+}
+
 static const char *solver(const void *context, const struct linear_equations *q, bool factors)
 {
-	const struct emitter *e = context;
-	const int n = q->n, i = q->number;
-	return factors ? spell(e, "$n_factor_by_lists(%d, %d, $n_first_of_%d, $n_before_%d, matrix_by_%d);", n,
-			       is_symmetric_system(q), i, i, i)
-		       : spell(e, "$n_solve_by_lists(%d, 1, $n_first_of_%d, $n_before_%d, matrix_by_%d, solved_by_%d);",
-			       n, i, i, i, i);
+	return factors ? factor_by_lists(context, matrix_of(q)) : solve_by_lists(context, matrix_of(q), 1, q->number);
 }
 
 struct recurrences *series_in_loop(const struct emitter *e)
@@ -137,15 +137,6 @@ static bool calls_stage(const struct expansion *x, enum stage_kind kind)
 	for (int i = 0; i < x->lines->values; i++)
 		any = any || x->lines->value[i].kind == kind;
 	return any;
-}
-
-static void emit_factor_lists(const struct emitter *e, const struct linear_equations *q)
-{
-	int *first = ARRAY(int, q->n + 1), *before = system_columns(q, first);
-	say(e, "\n/* Factors of the matrix of %d equations: where the columns of each row begin that are not 0, "
-	       "and these columns */\n", q->n);
-	emit_integers(e, "short", format("first_of_%d", q->number), q->n + 1, first);
-	emit_integers(e, "short", format("before_%d", q->number), first[q->n] ? first[q->n] : 1, before);
 }
 
 /* Like elements side by side: lanes, and which sums of products these begin a turn with */
@@ -187,8 +178,10 @@ void emit_series_loop_tables(const struct emitter *e)
 	emit_integers(e, "short", "kept_top", states + x->columns, row);
 	for (int i = 0; i < x->count; i++) {
 		const struct linear_equations *q = listed_at(x, i);
-		if (q)
-			emit_factor_lists(e, q);
+		if (q) {
+			SCRATCH int *first = ARRAY(int, q->n + 1);
+			emit_factor_lists(e, matrix_of(q), first, system_columns(q, first));
+		}
 		solves = solves || (q && !(e->step->collocation && e->step->collocation->motion->listed));
 	}
 	if (l->across)

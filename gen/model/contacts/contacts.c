@@ -90,8 +90,7 @@ static void add_drag(struct building *b, const struct atom *a)
 			error(a->node->child[0]->start, "scheme exact takes others beside what is piecewise linear",
 			      "beside a series the velocity of friction has one formula for all time");
 		if ((basis->kind == BASIS_ATOM && !a->node->follows) || is_highest(&b->model->frame, basis))
-			error(a->node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
-			      "the velocity of friction is linear in velocities");
+			refuse_velocity_of_friction(a->node);
 	}
 	RATIONAL start = ZERO;
 	bool reads = false;

@@ -79,9 +79,19 @@ bool never_falls_below(const struct form *force)
 	return stays_above_zero(force, start, NULL);
 }
 
+void report_drives(const struct node *friction)
+{
+	error(friction->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
+	      "this friction drives what slides instead of holding it");
+}
+
+void report_unheld(struct place at)
+{
+	error(at, "its force has to act on its own sliding velocity", "friction cannot hold what slides there");
+}
+
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to)
 {
 	if (force->terms > 0 && stays_positive(force, true, from, to))
-		error(node->start, "it acts against the sliding: friction(v, F) is F sgn(v) on the left side",
-		      "the force of friction is below 0");
+		refuse_force_below(node);
 }

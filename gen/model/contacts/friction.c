@@ -290,8 +290,7 @@ static void report_held(const struct holding *h, const struct stuck *stuck)
 		      "friction holds what other friction holds already: while all of it sticks its force is not "
 		      "determined");
 	if (has_states(v))
-		error(node->child[0]->start, "x', x' - y', or x' - 0.2 against what moves",
-		      "the velocity of friction is linear in velocities");
+		refuse_velocity_of_friction(node);
 }
 
 /* States that follow from the others; false: not all of these can stick together. */
@@ -437,8 +436,7 @@ static void check_response(struct building *b, const struct switching *s, const 
 	}
 	int sign = mpq_sgn(delassus) * mpq_sgn(f->factor);
 	if (sign < 0)
-		error(f->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
-		      "this friction drives what slides instead of holding it");
+		report_drives(f->atom->node);
 }
 
 /* What outputs read of it */
@@ -586,9 +584,7 @@ void build_friction(struct building *b, struct switching *s)
 			continue;
 		const struct linear *system = &s->system[region->system];
 		if (!leading_inverse(system, inverse, &column))
-			error(s->frictions ? s->friction->atom->node->at : s->impact->when->at,
-			      "its force has to act on its own sliding velocity",
-			      "friction cannot hold what slides there");
+			report_unheld(s->frictions ? s->friction->atom->node->at : s->impact->when->at);
 		for (int k = 0; k < region->holds; k++)
 			region->hold[k].row = row_of_form(b, region->hold[k].form);
 		for (int k = 0; k < region->releases; k++)

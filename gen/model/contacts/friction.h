@@ -14,6 +14,8 @@ bool stays_above_zero(const struct form *force, mpq_srcptr from, mpq_srcptr to);
 bool never_falls_below(const struct form *force);           /* below 0, from t = 0 on, as far as it is seen */
 /* that it is above 0 at some time between; `node`: where it stands */
 void check_force(const struct node *node, const struct form *force, mpq_srcptr from, mpq_srcptr to);
+_Noreturn void report_drives(const struct node *friction);  /* its force has the wrong sign */
+_Noreturn void report_unheld(struct place at);              /* its force does not reach its own velocity */
 
 /* ---- friction.c: dry friction in regions, where it slips and where it sticks ---- */
 

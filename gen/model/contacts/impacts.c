@@ -12,10 +12,7 @@
 
 static struct form *scalar_form(struct building *b, struct node *node)
 {
-	struct value *value = collect(&b->collector, node);
-	if (value->rows != 1 || value->columns != 1)
-		error(node->start, NULL, "expected a scalar, found a %d x %d matrix", value->rows, value->columns);
-	return value->cell[0];
+	return scalar_of(collect(&b->collector, node), node, NULL);
 }
 
 static void check_not_tuned(const struct node *node, const char *what)
@@ -314,8 +311,7 @@ static void add_row(const struct building *b, const struct node *end, int sign, 
 		return;
 	int coord = end->symbol->index + (end->component ? end->component - 1 : 0);
 	if (b->model->system.velocity[coord] < 0)
-		error(end->at, "a mass, or an equation with its second derivative",
-		      "an impact needs a mass: %s is of first order", b->model->names.coord[coord]);
+		report_no_mass(b, end->at, coord);
 	mpq_set_si(force[b->owner[coord]], sign, 1);
 }
 
@@ -329,8 +325,7 @@ static void add_gradient(const struct building *b, const struct when *when, cons
 		if (basis->order > 0)
 			report_velocity(b, when, basis->index);
 		if (b->model->system.velocity[basis->index] < 0)
-			error(when->guard->start, "a mass, or an equation with its second derivative",
-			      "an impact needs a mass: %s is of first order", b->model->names.coord[basis->index]);
+			report_no_mass(b, when->guard->start, basis->index);
 		mpq_set(force[b->owner[basis->index]], guard->term[i].factor);
 	}
 }

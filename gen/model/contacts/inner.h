@@ -38,6 +38,7 @@ struct form *rate_with_atoms(struct building *b, const struct form *form);
 /* Whether what a stop of this guard does to velocities depends on the state */
 bool contact_moves(const struct building *b, const struct form *guard);
 _Noreturn void report_velocity(const struct building *b, const struct when *when, int coord); /* in a stop */
+_Noreturn void report_no_mass(const struct building *b, struct place at, int coord); /* of what an impact moves */
 void find_masses(struct building *b);                        /* model->contacts.mass */
 void find_moving_impact(struct building *b, struct impact *impact);
 void find_moving_drag(struct building *b, struct drag *drag); /* where it moves */

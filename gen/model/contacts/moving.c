@@ -202,6 +202,12 @@ bool is_moved_by(const struct impact *impact, int coord)
 			     : mpq_sgn(impact->in->direction[coord]) != 0;
 }
 
+void report_no_mass(const struct building *b, struct place at, int coord)
+{
+	error(at, "a mass, or an equation with its second derivative", "an impact needs a mass: %s is of first order",
+	      b->model->names.coord[coord]);
+}
+
 _Noreturn void report_velocity(const struct building *b, const struct when *when, int coord)
 {
 	error(when->guard->start, "of velocities 'when' has guards", "a stop is between places: %s' stands here",
@@ -267,8 +273,7 @@ void find_moving_impact(struct building *b, struct impact *impact)
 		      "of %s is not", coord);
 	for (int j = 0; j < b->model->n; j++)
 		if (gradient[j]->terms > 0 && b->model->system.velocity[j] < 0)
-			error(impact->when->at, "a mass, or an equation with its second derivative",
-			      "an impact needs a mass: %s is of first order", b->model->names.coord[j]);
+			report_no_mass(b, impact->when->at, j);
 	law->press = rate_with_atoms(b, law->speed);
 	const struct form **force = with_slopes(b, law, gradient);
 	law->moving = moving_contact(b, impact->when->guard, gradient, force, law->speed, law->press);
@@ -404,9 +409,7 @@ void find_moving_drag(struct building *b, struct drag *drag)
 				      drag->rate);
 	int sign = sign_at_start(b, drag->moving);
 	if (sign == 0)
-		error(drag->atom->node->at, "its force has to act on its own sliding velocity",
-		      "friction cannot hold what slides there");
+		report_unheld(drag->atom->node->at);
 	if (sign < 0)
-		error(drag->atom->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
-		      "this friction drives what slides instead of holding it");
+		report_drives(drag->atom->node);
 }

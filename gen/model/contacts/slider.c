@@ -99,12 +99,6 @@ static void put_in_others(const struct slider_row *r, const struct form *slider_
 	}
 }
 
-static _Noreturn void report_drives(const struct node *node)
-{
-	error(node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
-	      "this friction drives what slides instead of holding it");
-}
-
 /* The force through the slider becomes less as it slides. */
 static void check_borne(const struct slider_row *r, const struct form *slider_force)
 {

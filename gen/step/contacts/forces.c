@@ -266,11 +266,9 @@ static void check_delassus(const struct constraint *h, const struct entry *delas
 	if (!h->node || h->of != NONE || !is_number_entry(delassus))
 		return;
 	if (mpq_sgn(delassus->number) == 0)
-		error(h->node->at, "its force has to act on its own sliding velocity",
-		      "friction cannot hold what slides there");
+		report_unheld(h->node->at);
 	if (mpq_sgn(delassus->number) > 0)
-		error(h->node->at, "on the left side it stands with the sign of a damper: + friction(x', F)",
-		      "this friction drives what slides instead of holding it");
+		report_drives(h->node);
 }
 
 static void find_all_delassus(struct constraints *all)
