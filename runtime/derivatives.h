@@ -15,7 +15,7 @@
  *     PL_OUT_SIZE                of x, of which outputs are rows: PL(out_row)[segment][output][];
  *                                PL(columns)(s, ds, x, S) sets x and what of it varies, but for the states;
  *                                PL(out_first), PL(out_varied): the entries of the rows' derivatives.  0: PL(out_d) is
- *                                there already
+ *                                there already.  PL_RELATIVE 1: of what is kept of states, PL(keep_d)(S, kept)
  *     PL_BY_SLOPES               1: some outputs are no rows: PL(out_by_slopes)(s, ds, J) adds theirs
  *
  *     PL(d_initial)[][], PL(d_names)[]     of the first state; what the columns are by
@@ -127,9 +127,13 @@ void PL(out_d)(
 	PL(columns)(s, ds, x, S);
 	for (p = 0; p < PL_DERIVATIVES; p++) {
 		const int *first = PL(out_first) + p * PL_SEGMENTS + segment;
+#if PL_RELATIVE
+		PL(keep_d)(ds->s[p], S[p]);
+#else
 		for (i = 0; i < PL_STATES; i++) {
 			S[p][i] = ds->s[p][i];
 		}
+#endif
 		for (i = 0; i < PL_OUTPUTS; i++) {
 			J[i][p] = 0;
 			for (j = 0; j < PL_OUT_SIZE; j++) {

@@ -29,7 +29,7 @@
  *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of
  *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables;
  *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h},
- *                                which is in PL_WHOLE_STEP
+ *                                which is in PL_WHOLE_STEP; PL_RELATIVE 1: PL(keep_d), PL(written_d) are there
  *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free, where
  *                                PL(cross) has found all crossings PL(vary_through), else PL(vary_searched), which
  *                                moves s as well */
@@ -399,6 +399,24 @@ static PL_SOUGHT(PL_TYPE *s, real x[PL_VECTOR])
 #endif
 
 #if PL_COLUMNS_D > 0
+#if !PL_RELATIVE
+static PL_INLINE void PL(keep_d)(const real *y, real *S)
+{
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		S[i] = y[PL_PLACE(i)];
+	}
+}
+
+static PL_INLINE void PL(written_d)(const real *S, real *y)
+{
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		y[PL_PLACE(i)] = S[i];
+	}
+}
+#endif
+
 /* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is, which moves
  * along.  known: so many crossings are there, and all; -1: they are searched for */
 static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing,
@@ -430,9 +448,7 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 		S[PL_COLUMNS_D][i] = 0;
 	}
 	for (p = 0; p < PL_COLUMNS_D; p++) {
-		for (i = 0; i < PL_STATES; i++) {
-			S[p][i] = ds->s[p][PL_PLACE(i)];
-		}
+		PL(keep_d)(ds->s[p], S[p]);
 	}
 #if PL_SHARED && PL_FEW > 0
 	if (known >= 0) {
@@ -448,9 +464,7 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 		ds->scale[PL_PLACE(i)] = scale[i];
 	}
 	for (p = 0; p < PL_COLUMNS_D; p++) {
-		for (i = 0; i < PL_STATES; i++) {
-			ds->s[p][PL_PLACE(i)] = S[p][i];
-		}
+		PL(written_d)(S[p], ds->s[p]);
 	}
 	if (contact->status & PL_UNDECIDED) {
 		pl_doubt_add(&v.doubt, PL_D_UNDECIDED, -1, tau);
@@ -534,9 +548,8 @@ static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], rea
 	}
 	for (p = 0; p < PL_COLUMNS_D; p++) {
 		const real *const change = over + (p * PL_MATRICES_D + s->contact.matrix) * PL_SIZE * PL_SIZE;
-		for (i = 0; i < PL_STATES; i++) {
-			S[p][i] = ds->s[p][PL_PLACE(i)];
-		}
+		real next[PL_STATES];
+		PL(keep_d)(ds->s[p], S[p]);
 		for (i = 0; i < PL_STATES; i++) {
 			const int row = i * PL_SIZE;
 			real sum = PL_ACTING_D(p) ? PL(part_of_row)(Phi + row, S[p], PL_SIZE)
@@ -544,8 +557,9 @@ static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], rea
 			if (PL_MOVING_D(p)) {
 				sum += PL(part_of_row)(change + row, x, PL_SIZE);
 			}
-			ds->s[p][PL_PLACE(i)] = sum;
+			next[i] = sum;
 		}
+		PL(written_d)(next, ds->s[p]);
 	}
 	for (i = 0; i < PL_STATES; i++) {
 		if (pl_magnitude(x[i]) > ds->scale[PL_PLACE(i)]) {

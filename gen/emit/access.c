@@ -70,10 +70,8 @@ static const char *elapsed_text(const struct emitter *e)
 static void emit_tables(const struct emitter *e)
 {
 	emit_initial(e, "initial", e->model);
-	if (e->model->relative) {
+	if (e->model->relative)
 		emit_initial(e, "initial_set", e->model->written);
-		emit_conversions(e);
-	}
 	if (e->step->linear.kicks.momenta)
 		emit_masses(e);
 	if (has_ranges(e))

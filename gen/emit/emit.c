@@ -166,6 +166,8 @@ static void emit_includes(const struct emitter *e, bool rhs)
 
 static void emit_all_tables(const struct emitter *e)
 {
+	if (e->model->relative)
+		emit_conversions(e);
 	emit_kept_phi(e);
 	emit_mass_matrix(e);
 	emit_energies(e);

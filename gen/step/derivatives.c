@@ -167,6 +167,15 @@ static void derive_delays(const struct step *step, struct derivatives *d)
 	}
 }
 
+/* Over the states as written, too */
+static void show_derivatives(struct step *step)
+{
+	struct step *shown = NEW(struct step);
+	*shown = *step->shown;
+	shown->derivatives = step->derivatives;
+	step->shown = shown;
+}
+
 static void derive(void *context)
 {
 	struct step *step = context;
@@ -184,6 +193,8 @@ static void derive(void *context)
 	if (step->model->switching || d->regions) {
 		step->derivatives = d;
 		d->varied = varied_models(step, d->regions ? d->regions->model : step->model);
+		if (step->model->relative)
+			show_derivatives(step);
 		return;
 	}
 	const int together = columns_together(step);

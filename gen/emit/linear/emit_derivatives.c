@@ -545,7 +545,8 @@ static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e->model) },
 		   { "DECLARED", e->model->declared_outputs },
 		   { "SCALED", d->varied != NULL }, { "SEGMENTS", row ? e->model->system.segments : 1 },
-		   { "OUT_SIZE", row }, { "AROUND", around }, { "BY_SLOPES", row && slopes_of_outputs(e->model) },
+		   { "OUT_SIZE", row }, { "RELATIVE", row && e->model->relative },
+		   { "AROUND", around }, { "BY_SLOPES", row && slopes_of_outputs(e->model) },
 		   { "PEAKS", peak_outputs(e->model) }, { "BY_VALUES", peaks_by_values(e->step) });
 	if (has_peaks(e))
 		say_macro(e, "PEAK_OF(s)", around ? "(s)->core.peak" : "(s)->peak");

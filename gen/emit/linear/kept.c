@@ -16,15 +16,16 @@ static const char *rate_text(const struct emitter *e, const struct form *rate, b
 	return s.terms > 1 || *sum_of(&s, 12) == '-' ? format("(%s)", sum_of(&s, 12)) : sum_of(&s, 12);
 }
 
-/* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind */
-static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at)
+/* What is kept at a coordinate, over the written ones or their velocities, which stand `shift` behind; in full, or what
+ * varies of it */
+static const char *kept_text(const struct emitter *e, const struct link *link, int coord, const int *at, bool full)
 {
 	const struct relative *r = e->model->relative;
 	const char *own = format("y[%d]", at[coord]);
 	struct summands s = { 0 };
 	if (link->kind == LINK_PARENT) {
 		bool rate = link->rate && coord < r->written->n && at[coord] >= r->written->n;
-		const char *parent = rate ? rate_text(e, link->rate, true) : format("y[%d]", at[link->from]);
+		const char *parent = rate ? rate_text(e, link->rate, full) : format("y[%d]", at[link->from]);
 		const char *from = scaled(finite_number(e, link->ratio), parent);
 		if (link->reversed)
 			return format("%s - %s", from, own);
@@ -66,14 +67,14 @@ static void find_places(const struct emitter *e, int order, int *at, int *kept)
 	}
 }
 
-static void emit_keep(const struct emitter *e, int order, const int *at, const int *kept)
+static void emit_keep(const struct emitter *e, int order, const int *at, const int *kept, bool full)
 {
 	const struct relative *r = e->model->relative;
 	for (int j = 0; j < r->written->n; j++) {
 		const struct link plain = { .kind = LINK_NONE };
 		const struct link *link = order && r->link[j].velocity >= 0 ? &plain : &r->link[j];
 		if (at[j] >= 0)
-			say(e, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at),
+			say(e, "    x[%d] = %s;  /* %s */\n", kept[j], kept_text(e, link, j, at, full),
 			       e->model->names.state[kept[j]]);
 	}
 }
@@ -100,32 +101,62 @@ static void emit_unlinked(const struct emitter *e, int order, const int *at, con
 			say(e, "    y[%d] = %c[%d];\n", at[j], gains ? 'd' : 'x', kept[j]);
 }
 
-/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
- * was given. */
-void emit_conversions(const struct emitter *e)
+static void emit_keeps(const struct emitter *e, const int *at, const int *kept, bool full)
 {
-	int coords = e->model->relative->written->n;
-	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
-	find_places(e, 0, at, kept);
-	find_places(e, 1, at + coords, kept + coords);
+	const int coords = e->model->relative->written->n;
 	say(e, "\n/* x: rigid-body and relative coordinates, from the states y as written */\n"
-	       "static void $n_keep(const double y[$N_STATES], double x[$N_STATES])\n"
-	       "{\n");
+	       "static void $o_keep%s(const double y[$N_STATES], double x[$N_STATES])\n"
+	       "{\n", full ? "" : "_d");
 	for (int order = 0; order < 2; order++)
-		emit_keep(e, order, at + order * coords, kept + order * coords);
-	say(e, "}\n"
-	       "\n/* And back: what they were at the last set, and what was gained since */\n"
+		emit_keep(e, order, at + order * coords, kept + order * coords, full);
+	say(e, "}\n");
+}
+
+/* y, from the gains d */
+static void emit_all_gains(const struct emitter *e, const int *at, const int *kept)
+{
+	const int coords = e->model->relative->written->n;
+	for (int order = 0; order < 2; order++) {
+		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
+		emit_gains(e, order, at + order * coords, kept + order * coords);
+	}
+}
+
+static void emit_written(const struct emitter *e, const int *at, const int *kept)
+{
+	const int coords = e->model->relative->written->n;
+	say(e, "\n/* And back: what they were at the last set, and what was gained since */\n"
 	       "static void $n_written(const $n *s, const double x[$N_STATES], double y[$N_STATES])\n"
 	       "{\n"
 	       "    double d[$N_STATES];\n"
 	       "    int i;\n"
 	       "    for (i = 0; i < $N_STATES; i++) { d[i] = x[i] - s->from[i]; }\n");
-	for (int order = 0; order < 2; order++) {
-		emit_unlinked(e, order, at + order * coords, kept + order * coords, true);
-		emit_gains(e, order, at + order * coords, kept + order * coords);
-	}
+	emit_all_gains(e, at, kept);
 	say(e, "    for (i = 0; i < $N_STATES; i++) { y[i] += s->set[i]; }\n");
 	for (int order = 0; order < 2 && !e->step->forced; order++)
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
+	say(e, "}\n");
+}
+
+/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
+ * was given. NAME_keep_d, NAME_written_d: of derivatives, which are all gain. A step of changing loads, which is of
+ * derivatives alone, starts from states as written. */
+void emit_conversions(const struct emitter *e)
+{
+	const int coords = e->model->relative->written->n;
+	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
+	const struct derivatives *d = e->step->shown->derivatives;
+	find_places(e, 0, at, kept);
+	find_places(e, 1, at + coords, kept + coords);
+	emit_keeps(e, at, kept, true);
+	if (!d || d->regions != e->step)
+		emit_written(e, at, kept);
+	if (!d || !d->varied)
+		return;
+	emit_keeps(e, at, kept, false);
+	say(e, "\n/* And back */\n"
+	       "static void $o_written_d(const double d[$N_STATES], double y[$N_STATES])\n"
+	       "{\n");
+	emit_all_gains(e, at, kept);
 	say(e, "}\n");
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives beside a step of regions: the columns of what acts on the states, and those of outputs. */
 #include "inner.h"
+#include "emit/declarations.h"
 #include "emit/steps.h"
 #include "model/tunable/elsewhere.h"
 
@@ -150,10 +151,13 @@ static void emit_varied_step(const struct emitter *e)
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
 	declare_varied_params(e);
 	declare_region_vector(e);
+	if (e->step->shown->derivatives->regions && e->model->relative)
+		say(e, "    double y[$N_STATES];\n");
 	emit_loads_of_step(e);
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
-		say(e, "    $n_get(s, x);\n");
+		say(e, e->model->relative ? "    $n_get(s, y);\n"
+					    "    $o_keep(y, x);\n" : "    $n_get(s, x);\n");
 	emit_acting_beside(e);
 	say(e, "    $o_vary(s, tau, x, contact, S, ds);\n");
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
@@ -187,6 +191,8 @@ void emit_all_varied(const struct emitter *e)
 {
 	if (e->step->derivatives->regions) {
 		const struct emitter changes = emitter_of_changes(e);
+		if (changes.model->relative)
+			emit_conversions(&changes);
 		emit_linear_tables(&changes);
 		emit_varied_step(&changes);
 	} else {
@@ -261,7 +267,7 @@ static void emit_columns_now(const struct emitter *e, const struct layout *x)
 	for (int l = 0; l < e->system->loads; l++)
 		needed[l] = x->load[l] >= 0;
 	emit_load_states(e, needed, true);
-	say(e, "    $n_get(s, x);\n");
+	say(e, "    $n_%s(s, x);\n", !e->model->relative ? "get" : e->step->forced ? "kept" : "stored_state");
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && needed[l]; k++) {
 			const char *operand = load_operand(e, l, k);
@@ -302,11 +308,11 @@ static void emit_rates(const struct emitter *e)
 	emit_region_vector(e, false);
 	emit_acting_now(e, layout);
 	say(e, "    for (p = 0; p < $N_D; p++) {\n"
-	       "        for (i = 0; i < %s; i++) { S[p][i] = ds->s[p][%s]; }\n"
+	       "        $o_keep_d(ds->s[p], S[p]);\n"
 	       "        pl_variation_rate(%d, %s, %sslopes[contact.matrix][0],\n"
 	       "                          $o_varied_first + p * %d + contact.matrix, %svaried, x, S[p], now);\n"
 	       "        for (i = 0; i < %s; i++) { rate[p][%s] = now[i]; }\n"
-	       "    }\n", states, place, layout->size, states, own, e->step->branches + 5, own, states, place);
+	       "    }\n", layout->size, states, own, e->step->branches + 5, own, states, place);
 	close_function(e, "t");
 }
 
@@ -333,7 +339,7 @@ static const char *varied_along(const struct emitter *e, const struct basis *alo
 	const int *velocity = e->system->velocity, own = along->index;
 	if (highest)
 		return format("rate[p][%d]", along->order > 1 ? velocity[own] : own);
-	return format("ds->s[p][%d]", along->order ? velocity[own] : own);
+	return format("%s[%d]", e->model->relative ? "kept" : "ds->s[p]", along->order ? velocity[own] : own);
 }
 
 static void emit_slope_in_column(const struct emitter *e, int output, int number, const struct basis *along)
@@ -357,14 +363,16 @@ static void emit_outputs_by_slopes(const struct emitter *e)
 	open_function(e, NULL, "static void $n_out_by_slopes(const $n *s, const $n_d *ds, "
 		      "double J[$N_OUTPUTS][$N_D])");
 	say(e, "    double slope[%d];\n"
-	       "%s"
+	       "%s%s"
 	       "    int p;\n"
-	       "    {\n", slopes_of_outputs(model), rated ? spell(e, "    double rate[$N_D][$N_STATES];\n") : "");
+	       "    {\n", slopes_of_outputs(model), rated ? spell(e, "    double rate[$N_D][$N_STATES];\n") : "",
+	    e->model->relative ? spell(e, "    double kept[$N_STATES];\n") : "");
 	emit_output_slopes(e);
 	say(e, "    }\n");
 	if (rated)
 		each_stepped(e, emit_rates_call);
-	say(e, "    for (p = 0; p < $N_D; p++) {\n");
+	say(e, "    for (p = 0; p < $N_D; p++) {\n"
+	       "%s", e->model->relative ? spell(e, "        $n_keep_d(ds->s[p], kept);\n") : "");
 	for (int o = 0, number = 0; o < model->outputs; o++)
 		for (int k = 0; k < model->output[o].slopes; k++, number++) {
 			const char *varied = varied_along(e, &model->output[o].slope[k].along);

@@ -505,6 +505,7 @@ void emit_variation_macros(const struct emitter *e)
 	say_macro(e, "MATRICES_D", integer_text(e->step->branches));
 	say_macro(e, "DEGREE_D", integer_text(e->step->series.degree + 3));
 	say_macro(e, "SHARED", integer_text(shares_step(e)));
+	say_macro(e, "RELATIVE", integer_text(e->model->relative != NULL));
 }
 
 bool shares_step(const struct emitter *e)

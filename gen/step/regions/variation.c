@@ -460,16 +460,18 @@ struct variation variation_of(const struct step *step, int part, const struct gu
 	return to;
 }
 
+/* Of the states as written */
 void vary_start(const struct step *step, int column, double *value)
 {
-	const struct varied_model *v = &step->derivatives->varied[column];
+	const struct model *written = step->model->relative ? step->model->written : step->model;
 	const struct sensitivity *by = &step->derivatives->column[column];
-	const struct linear *system = &step->model->system;
-	for (int i = 0; i < system->states; i++) {
-		const struct symbol *coord = step->model->frame.coord[system->coord[i]];
-		const int component = coord->length ? system->coord[i] - coord->index + 1 : 0;
-		value[i] = varied_number(v, v->more->initial[i], v->less->initial[i]);
-		if (by->symbol == coord && by->component == component && by->primes == (i >= step->model->n))
+	const struct varied_model v = written == step->model ? step->derivatives->varied[column] : vary(written, by);
+	for (int i = 0; i < written->system.states; i++) {
+		const int at = written->system.coord[i];
+		const struct symbol *coord = written->frame.coord[at];
+		const int component = coord->length ? at - coord->index + 1 : 0;
+		value[i] = varied_number(&v, v.more->initial[i], v.less->initial[i]);
+		if (by->symbol == coord && by->component == component && by->primes == (i >= written->n))
 			value[i] = 1;
 	}
 }
