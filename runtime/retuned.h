@@ -83,7 +83,7 @@ static real PL(amplitude)(const real *row)
 }
 #endif
 
-static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *value)
+static const short *PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *value)
 {
     int i;
     from = PL(take)(from, PL_GUARD_ROWS, PL_SIZE, value, c->guard_row[0]);
@@ -94,10 +94,6 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
         from = PL(take)(from, 1, PL_SIZE, value, c->speed[i]);
         from = PL(take)(from, 1, PL_SIZE, value, c->retreat[i]);
     }
-#if PL_FRICTION_FORCES > 0
-    from = PL(take)(from, PL_FRICTION_FORCES, PL_SIZE, value, c->friction_forces[0][0]);
-#endif
-    (void)from;
 #if PL_BOUNDED > 0
     for (i = 0; i < PL_SEGMENTS * PL_SWITCHING_FUNCTIONS; i++) {
 #if PL_SEGMENTS > 1
@@ -113,6 +109,7 @@ static void PL(take_guards)(PL(coeffs) *c, const short *from, const pl_two *valu
         c->impact[i].amplitude = PL(amplitude)(c->speed[i]);
     }
 #endif
+    return from;
 }
 #endif
 
@@ -126,7 +123,10 @@ static void PL(take_all)(PL(coeffs) *c, const pl_two *value)
 #endif
     from = PL(take)(from, PL_BREAKS, 1, value, c->breakpoint);
 #if PL_GUARD_ROWS > 0
-    PL(take_guards)(c, from, value);
+    from = PL(take_guards)(c, from, value);
+#endif
+#if PL_FRICTION_FORCES > 0
+    from = PL(take)(from, PL_FRICTION_FORCES, PL_SIZE, value, c->friction_forces[0][0]);
 #endif
     (void)from;
 }

@@ -233,12 +233,14 @@ static bool becomes_row(struct building *b, int index, struct value *value, bool
 	return row;
 }
 
-/* Does it read a highest derivative, which the force of a contact that rests changes, or beside a series friction? */
+/* Does it read a highest derivative, which the force of a contact that rests changes, or tunable params of regions, or
+ * beside a series friction? */
 static bool may_be_held(const struct building *b, const struct value *value)
 {
 	SCRATCH bool *seen = ARRAY(bool, (size_t)atoms_count(b->collector.atoms));
+	const bool may = has_bounces(b->model) || b->factor || gives_motion(b->model);
 	bool held = false;
-	for (int i = 0; i < value->rows * value->columns && (has_bounces(b->model) || gives_motion(b->model)); i++)
+	for (int i = 0; i < value->rows * value->columns && may; i++)
 		for (const struct form_term **term = terms_within(value->cell[i], seen); *term; term++)
 			held = held || is_highest(&b->model->frame, &(*term)->basis);
 	return held;

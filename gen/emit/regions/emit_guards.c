@@ -171,8 +171,6 @@ void emit_numbers_of_guards(const struct emitter *e, const struct guards *g)
 	emit_guard_rows(e, g);
 	emit_values(e, g);
 	emit_impacts(e, g);
-	if (e->model->params.retuned && e->model->switching->transmitted_forces > 0)
-		emit_friction_forces(e);
 }
 
 void emit_friction_forces(const struct emitter *e)

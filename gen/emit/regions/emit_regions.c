@@ -155,6 +155,8 @@ static void emit_numbers_of_regions(const struct emitter *e, const struct pieces
 		emit_own_check(e, pieces, function);
 	if (g)
 		emit_numbers_of_guards(e, g);
+	if (e->model->params.retuned && regions_of(e)->transmitted_forces > 0)
+		emit_friction_forces(e);
 	if (e->model->params.retuned)
 		emit_own_variation(e, g);
 }

@@ -168,9 +168,6 @@ static void list_jumps(const struct emitter *e, struct list *l, const struct gua
 		from(e, l, RETUNED_SPEED, i, 0, false);
 		from(e, l, RETUNED_BACK, i, 0, false);
 	}
-	for (int k = 0; k < s->regions; k++)
-		for (int i = 0; i < s->transmitted_forces; i++)
-			from(e, l, RETUNED_FRICTION, k, i, false);
 }
 
 static int emit_from(const struct emitter *e, const struct guards *g)
@@ -187,6 +184,9 @@ static int emit_from(const struct emitter *e, const struct guards *g)
 		list_guard_rows(e, &l, g);
 		list_jumps(e, &l, g);
 	}
+	for (int k = 0; k < s->regions; k++)
+		for (int i = 0; i < s->transmitted_forces; i++)
+			from(e, &l, RETUNED_FRICTION, k, i, false);
 	bool any = false;
 	for (int i = 0; i < l.count; i++)
 		any = any || l.number[i] != 0;
@@ -264,7 +264,7 @@ void emit_retuned(const struct emitter *e)
 		   { "FROM", taken }, { "CHECKS", checks }, { "BOUNDS", rows_change(e) },
 		   { "HALVINGS", LIMIT_PIECES }, { "RUNGS", room_for_rungs(e->step) }, { "GUARDS", g.guards },
 		   { "GUARD_ROWS", g.rows }, { "VALUES", g.assignments }, { "IMPACTS", s->segments * g.impacts },
-		   { "FRICTION_FORCES", has_guards(e) ? s->regions * s->transmitted_forces : 0 },
+		   { "FRICTION_FORCES", s->regions * s->transmitted_forces },
 		   { "BOUNDED", bounded }, { "COLUMNS_D", columns_of(e) }, { "STEPS_D", v.over != NULL },
 		   { "EVENT_FREE", e->step->regions.event_check.is_made });
 	if (e->step->regions.event_check.is_made)

@@ -518,14 +518,16 @@ static bool reads_remainder(const struct model *model)
 	return any;
 }
 
-/* A contact that rests changes highest derivatives by its force, which no equation has: they are rows of regions. */
-static void find_highest_of_regions(const struct model *model, struct switching *s)
+/* A contact that rests changes highest derivatives by its force, which no equation has: they are rows of regions, as
+ * those are that tunable params change. */
+static void find_highest_of_regions(const struct building *b, struct switching *s)
 {
+	const struct model *model = b->model;
 	s->highest = ARRAY(int, model->n);
 	for (int k = 0; k < model->n; k++) {
-		const bool may_rest = has_bounces(model) && model->equations.highest[k];
-		s->highest[k] = may_rest ? s->transmitted_forces : -1;
-		if (may_rest)
+		const bool own = (has_bounces(model) || b->factor) && model->equations.highest[k];
+		s->highest[k] = own ? s->transmitted_forces : -1;
+		if (own)
 			*MORE(s->transmitted, s->transmitted_forces) = NULL;
 	}
 }
@@ -549,7 +551,7 @@ static void build_friction_forces(struct building *b, struct switching *s)
 	for (int c = 0; c < model->remainder.force_columns && reads_remainder(model); c++)
 		feel(s, seen, model->schedule.operator[0].left[c]);
 	const int frictions = s->transmitted_forces;
-	find_highest_of_regions(model, s);
+	find_highest_of_regions(b, s);
 	for (int r = 0; r < s->regions; r++)
 		s->region[r].friction_force = ARRAY(struct output *, s->transmitted_forces);
 	for (int i = 0; i < frictions; i++) {

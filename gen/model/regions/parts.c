@@ -410,7 +410,7 @@ static void build_full(struct building *b, struct switching *s)
 	}
 	if (!b->factor)                         /* what is idle at these values may act at others */
 		remove_idle_breaks(s);
-	if (has_events(s))
+	if (has_events(s) || b->factor)         /* highest derivatives of outputs follow from tunable params, too */
 		build_friction(b, s);
 	build_impact_rows(b, s);
 	if (s->cached)

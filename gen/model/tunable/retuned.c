@@ -313,24 +313,9 @@ static void number_rows(struct elsewhere *s)
 
 /* ---- what is refused ---- */
 
-static void check_outputs(const struct model *model)
-{
-	const struct facts facts = facts_of_model(model);
-	const struct objection o = objection_to(CAN_ACCELERATION, &facts, model);
-	for (int i = 0; i < model->outputs; i++) {
-		const struct output *output = &model->output[i];
-		const struct form *form = output->form ? output->form : output->left;
-		struct reads reads = reads_of(model, form != NULL, &form);
-		for (int k = 0; k < model->n; k++)
-			if (reads.highest[k])
-				error(output->value->start, o.way, "output '%s' %s", output->name, o.why);
-	}
-}
-
 static void check_regions(const struct model *model)
 {
 	check_tuned(model);
-	check_outputs(model);
 	refuse(CAN_TUNABLE, model, model->spec->tuned.tunable[0].at);
 }
 
