@@ -235,17 +235,6 @@ static double sample(double t)
 	return sin(2 * t) + 0.5 * cos(5 * t + 1);
 }
 
-static bool apart(const double *a, const double *b, int count, double tolerance, double *worst, const char *name,
-		  double t)
-{
-	bool good = true;
-	for (int i = 0; i < count; i++) {
-		*worst = worse(*worst, fabs(a[i] - b[i]));
-		good = close_to(a[i], b[i], tolerance, "%s, t = %g: number %d", name, t, i) && good;
-	}
-	return good;
-}
-
 /* What short steps are given: a part of the ramp, or what is held */
 static double within(double from, double h, double part, bool ramp)
 {
@@ -269,19 +258,19 @@ static void long_and_short(const char *name, int step, bool ramp)
 			run_step(&f, &v);
 			run_state(&f, z);
 			model->at(r.state, &u, part * fine, y);
-			good = apart(y, z, 4, 1e-11, &worst, name, from + part * fine) && good;
+			good = same_numbers(y, z, 4, 1e-11, &worst, name, from + part * fine) && good;
 		}
 		memcpy(copy, r.state, model->size);
 		model->step(copy, &u);          /* put back, it goes the same way again */
 		run_step(&r, &u);
 		run_state(&r, y);
 		model->get(copy, z);
-		good = apart(y, z, 4, 0, &worst, name, from + h) && good;
+		good = same_numbers(y, z, 4, 0, &worst, name, from + h) && good;
 		run_state(&f, z);
-		good = apart(y, z, 4, 1e-11, &worst, name, from + h) && good;
+		good = same_numbers(y, z, 4, 1e-11, &worst, name, from + h) && good;
 		model->out(r.state, out);
 		f.of->model->out(f.state, fine_out);
-		good = apart(out, fine_out, 4, 1e-9, &worst, name, from + h) && good;
+		good = same_numbers(out, fine_out, 4, 1e-9, &worst, name, from + h) && good;
 		free(copy);
 	}
 	ok(good, "%s, h = %g: steps and times inside of them as steps of %g, to %.2g", name, h, fine, worst);
@@ -290,31 +279,6 @@ static void long_and_short(const char *name, int step, bool ramp)
 	is_close(model->status(r.state), 0, 0, "%s, h = %g: status", name, h);
 	run_free(&r);
 	run_free(&f);
-}
-
-/* Set to any time it goes on as if it had come there. */
-static void set_later(int steps)
-{
-	struct run came = run_new(variant_of(changes_table, "held_2")), set = run_new(came.of);
-	const pl_model *model = came.of->model;
-	double y[4], z[4], worst = 0;
-	const double u = 0.3;
-	bool good = true;
-	for (int k = 0; k < steps; k++)
-		run_step(&came, &u);
-	run_step(&set, &u);
-	run_state(&came, y);
-	model->set(set.state, model->time(came.state), y);
-	for (int k = 0; k < 200; k++) {
-		run_step(&came, &u);
-		run_step(&set, &u);
-		run_state(&came, y);
-		run_state(&set, z);
-		good = apart(z, y, 4, 1e-13, &worst, "set", model->time(came.state)) && good;
-	}
-	ok(good, "set to t = %g: goes on, to %.2g", steps * model->h, worst);
-	run_free(&came);
-	run_free(&set);
 }
 
 int main(void)
@@ -342,9 +306,7 @@ int main(void)
 		long_and_short("joined", step, true);
 		long_and_short("held", step, false);
 	}
-	set_later(50);
-	set_later(113);
-	set_later(145);
-	set_later(200);
+	for (int i = 0; i < 4; i++)
+		goes_on_when_set(variant_of(changes_table, "held_2"), (const int[]){50, 113, 145, 200}[i]);
 	return tap_end();
 }

@@ -116,44 +116,7 @@ static void spring_pass_time(spring *s, const real u[])
 
 static const double h = 0.0625, epsilon = (double)REAL_EPSILON;
 
-/* From x = 1 at rest: x = cos 2t down to 0, then -2 sin (t - pi/4) for half a period of the first spring alone, and up
- * again; a period is 3 pi / 2. */
-static double position(double t)
-{
-	const double pi = acos(-1.0), part = fmod(t, 1.5 * pi), behind = part - 0.25 * pi;
-	return behind < 0 ? cos(2 * part) : behind < pi ? -2 * sin(behind) : sin(2 * (behind - pi));
-}
-
-static double crossing_time(int number)
-{
-	const double pi = acos(-1.0);
-	return 1.5 * pi * (number / 2) + 0.25 * pi + (number % 2 ? pi : 0.0);
-}
-
-/* Ten periods; bounds: what ten of their forty parts of a step may be off, (w h)^5 / 6!, and rounding */
-static void check_periods(void)
-{
-	spring s = {.y = {1, 0}};
-	const double off_a_part = pow(2 * h, 5) / 720, bound = 10 * off_a_part + 100 * epsilon;
-	double worst = 0, between = 0, late = 0;
-	int k, i, crossed = 0;
-	spring_place(&s);
-	for (k = 0; k < 753; k++) {
-		real y[2];
-		spring_state_at(&s, NULL, (real)(0.625 * h), y);
-		between = fmax(between, fabs((double)y[0] - position((k + 0.625) * h)));
-		spring_serve(&s, NULL);
-		worst = fmax(worst, fabs((double)s.y[0] - position((k + 1) * h)));
-		for (i = 0; i < s.contact.crossings; i++)
-			late = fmax(late, fabs(k * h + (double)s.contact.crossing[i].time - crossing_time(crossed++)));
-	}
-	ok(worst <= bound && between <= bound && s.status == 0,
-	   "ten periods: off the closed form by %.17g at steps, %.17g between, bound %.17g; status %d", worst, between,
-	   bound, s.status);
-	ok(crossed == 20 && s.contact.total == 20 && late <= bound,
-			"%d crossings, 20 wanted, off by %.17g s, bound %.17g",
-	   crossed, late, bound);
-}
+#include "periods.h"
 
 /* A step that comes near a breakpoint is looked at closely, and stands; the next one passes it, if slowly. */
 static void check_approach(void)
@@ -181,7 +144,8 @@ static void check_not_finite(void)
 
 int main(void)
 {
-	check_periods();
+	/* what ten of their forty parts of a step may be off, (w h)^5 / 6!, and rounding */
+	check_periods(753, h, 10 * pow(2 * h, 5) / 720 + 100 * epsilon);
 	check_approach();
 	check_not_finite();
 	return tap_end();

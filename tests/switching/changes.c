@@ -54,16 +54,6 @@ static double within(double t, double h, bool ramp)
 	return (from > 0 ? sample(from) : 0) * (1 - part) + sample(from + h) * part;
 }
 
-static bool apart(const double *a, const double *b, double tolerance, double *worst, const char *name, double t)
-{
-	bool good = true;
-	for (int i = 0; i < 6; i++) {
-		*worst = worse(*worst, fabs(a[i] - b[i]));
-		good = close_to(a[i], b[i], tolerance, "%s, t = %g: state %d", name, t, i) && good;
-	}
-	return good;
-}
-
 static void long_and_short(const char *name, int step, bool ramp)
 {
 	const struct variant *of = variant_of(changes_table, "%s_%d", name, step),
@@ -82,41 +72,17 @@ static void long_and_short(const char *name, int step, bool ramp)
 			run_step(&f, &v);
 			run_state(&f, z);
 			of->model->at(r.state, &u, part * fine->model->h, y);
-			good = apart(y, z, 1e-11, &worst, name, now) && good;
+			good = same_numbers(y, z, of->model->states, 1e-11, &worst, name, now) && good;
 		}
 		run_step(&r, &u);
 		run_state(&r, y);
-		good = apart(y, z, 1e-11, &worst, name, from + h) && good;
+		good = same_numbers(y, z, of->model->states, 1e-11, &worst, name, from + h) && good;
 	}
 	ok(good, "%s, h = %g: steps and times inside of them as steps of %g, to %.2g", name, h, fine->model->h, worst);
 	ok(close_to((double)of->crossed(r.state), (double)fine->crossed(f.state), 0, "%s: crossings", name) &&
 	   of->crossed(r.state) > 4, "%s, h = %g: %d crossings", name, h, (int)of->crossed(r.state));
 	run_free(&r);
 	run_free(&f);
-}
-
-/* Set behind changes it goes on as if it had come there. */
-static void set_later(void)
-{
-	const struct variant *of = variant_of(changes_table, "held_2");
-	struct run came = run_new(of), set = run_new(of);
-	double y[MOST_STATES], z[MOST_STATES], worst = 0;
-	const double u = 0.3;
-	bool good = true;
-	for (int k = 0; k < 145; k++)
-		run_step(&came, &u);
-	run_state(&came, y);
-	of->model->set(set.state, of->model->time(came.state), y);
-	for (int k = 0; k < 200; k++) {
-		run_step(&came, &u);
-		run_step(&set, &u);
-		run_state(&came, y);
-		run_state(&set, z);
-		good = apart(z, y, 1e-13, &worst, "set", of->model->time(came.state)) && good;
-	}
-	ok(good, "set to a time between changes: goes on, to %.2g", worst);
-	run_free(&came);
-	run_free(&set);
 }
 
 /* The region of a state that is set is that of its time, and nothing is crossed to come there; what is told after a
@@ -170,7 +136,7 @@ int main(void)
 		long_and_short("held", step, false);
 		long_and_short("shaken", step, true);
 	}
-	set_later();
+	goes_on_when_set(variant_of(changes_table, "held_2"), 145);
 	region_of_time();
 	for (int step = 0; step < 2; step++)
 		only_told(step);

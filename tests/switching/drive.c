@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 #include "drive.h"
+#include "tap.h"
+#include "worse.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -72,4 +74,39 @@ int run_crossings(struct run *r, double t, int most, double *time, pl_crossing *
 		}
 	}
 	return count;
+}
+
+bool same_numbers(const double *a, const double *b, int count, double tolerance, double *worst, const char *name,
+		  double t)
+{
+	bool good = true;
+	for (int i = 0; i < count; i++) {
+		*worst = worse(*worst, fabs(a[i] - b[i]));
+		good = close_to(a[i], b[i], tolerance, "%s, t = %g: number %d", name, t, i) && good;
+	}
+	return good;
+}
+
+void goes_on_when_set(const struct variant *of, int steps)
+{
+	struct run came = run_new(of), set = run_new(of);
+	const pl_model *model = of->model;
+	double y[MOST_STATES], z[MOST_STATES], worst = 0;
+	const double u = 0.3;
+	bool good = true;
+	for (int k = 0; k < steps; k++)
+		run_step(&came, &u);
+	run_step(&set, &u);
+	run_state(&came, y);
+	model->set(set.state, model->time(came.state), y);
+	for (int k = 0; k < 200; k++) {
+		run_step(&came, &u);
+		run_step(&set, &u);
+		run_state(&came, y);
+		run_state(&set, z);
+		good = same_numbers(z, y, model->states, 1e-13, &worst, "set", model->time(came.state)) && good;
+	}
+	ok(good, "set to t = %g: goes on, to %.2g", steps * model->h, worst);
+	run_free(&came);
+	run_free(&set);
 }

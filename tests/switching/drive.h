@@ -27,4 +27,11 @@ void run_state(const struct run *r, double *y);
  * `most`. */
 int run_crossings(struct run *r, double t, int most, double *time, pl_crossing *crossing);
 
+/* Are as many numbers the same to the tolerance? *worst: how far any are apart */
+bool same_numbers(const double *a, const double *b, int count, double tolerance, double *worst, const char *name,
+		  double t);
+
+/* Set to the time after so many steps with an input, also from elsewhere, it goes on as if it had come there. */
+void goes_on_when_set(const struct variant *of, int steps);
+
 #endif

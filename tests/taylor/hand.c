@@ -200,46 +200,7 @@ static void check_parts(void)
 	   (double)fine.y[0], bound, s.status);
 }
 
-/* From x = 1 at rest: x = cos 2t down to 0, then -2 sin (t - pi/4) for half a period of the first spring alone, and up
- * again; a period is 3 pi / 2. */
-static double spring_position(double t)
-{
-	const double pi = acos(-1.0), part = fmod(t, 1.5 * pi), behind = part - 0.25 * pi;
-	return behind < 0 ? cos(2 * part) : behind < pi ? -2 * sin(behind) : sin(2 * (behind - pi));
-}
-
-static double crossing_time(int number)
-{
-	const double pi = acos(-1.0);
-	return 1.5 * pi * (number / 2) + 0.25 * pi + (number % 2 ? pi : 0.0);
-}
-
-/* Formulas that the state chooses: each crossing in its place, and the state exact behind it */
-static void check_spring(void)
-{
-	const double h = 0.125, bound = 400 * epsilon;
-	spring s = {.y = {1, 0}};
-	double worst = 0, between = 0, late = 0;
-	int k, i, crossed = 0;
-	spring_place(&s);
-	for (k = 0; k < 377; k++) {
-		real y[2];
-		spring_state_at(&s, NULL, (real)(0.625 * h), y);
-		between = fmax(between, fabs((double)y[0] - spring_position((k + 0.625) * h)));
-		spring_serve(&s, NULL);
-		worst = fmax(worst, fabs((double)s.y[0] - spring_position((k + 1) * h)));
-		for (i = 0; i < s.contact.crossings; i++) {
-			late = fmax(late, fabs(k * h + (double)s.contact.crossing[i].time - crossing_time(crossed++)));
-		}
-	}
-	ok(worst <= bound && between <= bound && s.status == 0,
-	   "ten periods over a breakpoint: off the closed form by %.17g at steps, %.17g between, bound %.17g; status "
-		"%d",
-	   worst, between, bound, s.status);
-	ok(crossed == 20 && s.contact.total == 20 && late <= bound, "%d crossings, 20 wanted, off by %.17g s, bound "
-		"%.17g",
-	   crossed, late, bound);
-}
+#include "periods.h"
 
 /* What is no number is not followed, and the state stays as it was. */
 static void check_not_finite(void)
@@ -283,7 +244,7 @@ int main(void)
 	check_oscillator();
 	check_pendulum();
 	check_parts();
-	check_spring();
+	check_periods(377, 0.125, 400 * epsilon);
 	check_not_finite();
 	check_rest();
 	return tap_end();
