@@ -4,7 +4,6 @@
 #include "model/checks.h"
 #include "step/certify/certify.h"
 
-#include <math.h>
 #include <string.h>
 
 static const char *value_of_param(const struct symbol *s)

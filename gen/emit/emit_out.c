@@ -2,7 +2,6 @@
 /* Outputs as C: rows over states, load states and inputs, or what is not linear as its own expression. */
 #include "steps.h"
 #include "model/reads.h"
-#include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
 #include "emit/series/series.h"
 

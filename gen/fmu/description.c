@@ -2,7 +2,6 @@
 /* What describes an FMU (FMI 2.0.5, section 2.2; FMI 3.0.2, sections 2.4 and 2.5), valid against the standard's
  * schemas. */
 #include "fmu/fmu.h"
-#include "model/model.h"
 #include "model/request.h"
 
 #include <stdlib.h>

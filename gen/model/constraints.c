@@ -2,11 +2,9 @@
 /* Constraints: what brings a state back onto them, and the energy that is conserved beside them. */
 #include "building.h"
 #include "capability.h"
-#include "checks.h"
 #include "model/contacts/friction.h"
 #include "state_mass.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { LEVELS = 2 };                /* positions, velocities */

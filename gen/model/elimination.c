@@ -8,7 +8,6 @@
  * (J. Baumgarte, Computer Methods in Applied Mechanics and Engineering 1, 1972): a state that meets the constraints
  * moves as it does, and what it misses of them decays as (1 + a t) e^{-a t}, here with a = 4/h. */
 #include "building.h"
-#include "checks.h"
 #include "state_mass.h"
 
 enum { LEVELS = 2 };

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* What a spec may say but is better warned of. */
 #include "building.h"
-#include "capability.h"
 #include "checks.h"
 #include "reads.h"
 #include "model/contacts/friction.h"

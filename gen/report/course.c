@@ -3,7 +3,6 @@
  * sentence, or indented one of a list: the comment at the top of the C has them, and --explain. */
 #include "report/report.h"
 #include "step/collocation/collocation.h"
-#include "step/exponential/normal.h"
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 #include "step/series/expansion.h"

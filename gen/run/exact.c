@@ -5,8 +5,6 @@
 #include "run/run.h"
 #include "step/linear/images.h"
 
-#include <math.h>
-
 /* Samples times what an exact one is a sum of; states of which residues are found in a second */
 enum { MOST_EXACT = 1000000, MOST_STATES = 48 };
 

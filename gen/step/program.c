@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* The program of a step. */
-#include "model/checks.h"
 #include "model/contacts/contacts.h"
 #include "model/reads.h"
 #include "step/linear/forms.h"

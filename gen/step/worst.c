@@ -9,7 +9,6 @@
 #include "step/linear/forms.h"
 #include "step/linear/rows.h"
 #include "step/regions/guards.h"
-#include "step/regions/regions.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,7 +6,6 @@
 #include "model/checks.h"
 #include "model/contacts/contacts.h"
 #include "model/building.h"
-#include "model/capability.h"
 #include "step/collocation/collocation.h"
 #include "step/linear/rows.h"
 #include "step/regions/guards.h"

@@ -2,7 +2,6 @@
 /* A run: NAME_step from t = 0 on, each row looked at by whoever watches. */
 #include "plrun.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

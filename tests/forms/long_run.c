@@ -14,7 +14,6 @@
 #include "tap.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 

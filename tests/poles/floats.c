@@ -7,7 +7,6 @@
 #include "tap.h"
 #include "truth.h"
 
-#include <math.h>
 #include <stdlib.h>
 
 enum { STEPS = 200 };

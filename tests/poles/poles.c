@@ -6,7 +6,6 @@
 #include "tap.h"
 #include "truth.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 

@@ -9,7 +9,6 @@
 #include "variant.h"
 #include VARIANTS_H
 
-#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -30,7 +30,8 @@ static void check_periods(int steps, double step, double bound)
 		spring_serve(&s, NULL);
 		worst = fmax(worst, fabs((double)s.y[0] - position((k + 1) * step)));
 		for (i = 0; i < s.contact.crossings; i++) {
-			late = fmax(late, fabs(k * step + (double)s.contact.crossing[i].time - crossing_time(crossed++)));
+			late = fmax(late,
+				    fabs(k * step + (double)s.contact.crossing[i].time - crossing_time(crossed++)));
 		}
 	}
 	ok(worst <= bound && between <= bound && s.status == 0,

@@ -4,7 +4,6 @@
 
 #include <math.h>
 #include <stdbool.h>
-#include <stdint.h>
 
 /* Times between 0 and 24: some that all steps end at, some close to the one before */
 static void choose_changes(struct timed_system *s)

@@ -236,6 +236,14 @@ static void check_midway(const struct tuned *m)
 	judge(&third, m, PART, "the spec's again");
 }
 
+static void step_alike(const real_model *model, instance *s, instance *t, int from, int to)
+{
+	for (int k = from; k < to; k++) {
+		model->step(s, samples(model, k));
+		model->step(t, samples(model, k));
+	}
+}
+
 /* Other params and the same step, computed in the place of an instance's own */
 static void check_in_place(const struct tuned *m)
 {
@@ -247,10 +255,7 @@ static void check_in_place(const struct tuned *m)
 	m->retune(&coeffs, params, m->model->h);
 	m->use(&t, &coeffs);
 	m->retune(s.byte + m->place, params, m->model->h);
-	for (int k = 0; k < 50; k++) {
-		m->model->step(&s, samples(m->model, k));
-		m->model->step(&t, samples(m->model, k));
-	}
+	step_alike(m->model, &s, &t, 0, 50);
 	ok(same_instance(m->model, &s, &t), TYPE ", %s: retuned in an instance, the same step", m->name);
 }
 
@@ -391,17 +396,11 @@ static void check_descriptor(const struct tuned *m)
 	values_there(m, params, &h);
 	m->model->init(&s);
 	m->model->init(&t);
-	for (int k = 0; k < 10; k++) {
-		m->model->step(&s, samples(m->model, k));
-		m->model->step(&t, samples(m->model, k));
-	}
+	step_alike(m->model, &s, &t, 0, 10);
 	const int status = m->model->retune(&s, params, h);
 	m->retune(&coeffs, params, h);
 	m->use(&t, &coeffs);
-	for (int k = 10; k < 20; k++) {
-		m->model->step(&s, samples(m->model, k));
-		m->model->step(&t, samples(m->model, k));
-	}
+	step_alike(m->model, &s, &t, 10, 20);
 	ok(status == 0 && same_instance(m->model, &s, &t),
 		TYPE ", %s: the descriptor's retune as retune and use, status %d", m->name, status);
 }

@@ -26,7 +26,6 @@
 #include "model/linear/modal_truncation.h"
 #include "model/tunable/tuning.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

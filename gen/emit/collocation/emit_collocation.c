@@ -7,7 +7,6 @@
 #include "model/reads.h"
 #include "step/collocation/collocation.h"
 #include "step/contacts/series_contacts.h"
-#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "step/regions/guards.h"
 

@@ -7,7 +7,6 @@
  */
 #include "inner.h"
 #include "model/capability.h"
-#include "model/checks.h"
 
 #include <math.h>
 #include <stdlib.h>

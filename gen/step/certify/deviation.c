@@ -6,7 +6,6 @@
  * equations, Oxford 1992). */
 #include "model/contacts/contacts.h"
 #include "model/regions/regions.h"
-#include "model/regions/switching_functions.h"
 #include "trajectory.h"
 
 #include <math.h>

@@ -3,7 +3,6 @@
  * their rates are. Factors are numbers; those of mechanisms, whose mass matrix or whose directions depend on the state,
  * are sequences. */
 #include "model/contacts/friction.h"
-#include "step/series/switching.h"
 #include "step/series/expansion.h"
 #include "inner.h"
 

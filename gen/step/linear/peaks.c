@@ -3,7 +3,6 @@
 #include "model/reads.h"
 #include "step/regions/regions.h"
 #include "rows.h"
-#include "step/tunable/tuned.h"
 
 int peak_outputs(const struct model *model)
 {

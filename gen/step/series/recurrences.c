@@ -3,7 +3,6 @@
  * Derivatives, 2008, chapter 13). The next one waits for the highest coefficients, so these are added last, and enter
  * by their gains (implicit.c). */
 #include "recurrences.h"
-#include "step/exponential/recipe.h"
 #include "step/tapes.h"
 
 #include <math.h>
