@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
 # rows.sh BUILD: what a million rows cost with runtime/host/plmain.c: as CSV, with --raw, and with a record of inputs of
-# 17 digits each; whole processes, their output thrown away.
+# 17 digits each; a sweep of 1000 rows, beside a loop over NAME_step. Whole processes, their output thrown away.
 set -e
 build=$1
 work=$(mktemp -d)
@@ -29,3 +29,39 @@ least 'sdcsf, t and four outputs, as CSV' "$work/sdcsf" 10000
 least 'the same, --raw' "$work/sdcsf" 10000 --raw
 least 'one input of 17 digits, two columns, as CSV' sh -c 'exec "$0" 1000 <"$1"' "$work/driven" "$work/record.csv"
 least 'the same, --raw' sh -c 'exec "$0" 1000 --raw <"$1"' "$work/driven" "$work/record.csv"
+
+# The values of a sweep's line, by NAME_step and NAME_out of each row
+cat >"$work/loop.c" <<END
+#include <math.h>
+#include <stdio.h>
+#include "swept_pl.h"
+int main(void)
+{
+	for (int row = 0; row < 1000; row++) {
+		const double c1[] = { 0.4 + 0.2 * row / 999 };
+		double out[SWEPT_OUTPUTS], squares[SWEPT_OUTPUTS] = { 0 };
+		swept_coeffs c;
+		swept s;
+		swept_init(&s);
+		if (swept_retune(&c, c1, SWEPT_H) != 0)
+			return 1;
+		swept_use(&s, &c);
+		for (long k = 1; k <= 100000; k++) {
+			swept_step(&s);
+			swept_out(&s, out);
+			for (int i = 0; i < SWEPT_OUTPUTS; i++)
+				squares[i] += out[i] * out[i];
+		}
+		for (int i = 0; i < SWEPT_OUTPUTS; i++)
+			printf("%.17g,%.17g\\n", out[i], sqrt(squares[i] / 100001));
+	}
+	return 0;
+}
+END
+echo 'a sweep of 1000 rows of 100,000 steps, four outputs:'
+for model in sdcs sdcsf; do
+	"$build/plgen" --fast --tunable c1 --prefix swept -o "$work/swept_pl.c" models/$model.spec
+	gcc -O2 -Iruntime -I"$work" "$work/loop.c" "$work/swept_pl.c" runtime/*.c -lm -o "$work/loop"
+	least "$model, plrun --sweep --jobs 1" "$build/plrun" models/$model.spec 1000 --sweep c1=0.4:0.6:1000 --jobs 1
+	least 'the same by NAME_step and NAME_out' "$work/loop"
+done

@@ -237,6 +237,34 @@ PL_LANES_INLINE void PL(lanes_between)(const PL_INSTANCES *b, size_t j, const pl
 
 /* ---- groups of lanes over the steps ahead ---- */
 
+/* Of some instances the sums as NAME_many has them, or back */
+PL_LANES_INLINE void PL(sums_move)(const PL_INSTANCES *b, size_t j, real *sum, pl_lanes *part, const int back)
+{
+	const size_t left = PL(lanes_left)(b, j), first = left ? j : 0;
+	size_t i;
+	PL_LANES_UNROLL
+	for (i = 0; i < 3 * PL_OUTPUTS; i++) {
+		if (back) {
+			pl_lanes_store(sum + i * b->count + first, part[i], left);
+		} else {
+			part[i] = pl_lanes_load(sum + i * b->count + first, left);
+		}
+	}
+}
+
+/* As pl_sum_squares */
+PL_LANES_INLINE void PL(sums_add)(pl_lanes *sum, const pl_lanes *value)
+{
+	int i;
+	PL_LANES_UNROLL
+	for (i = 0; i < PL_OUTPUTS; i++) {
+		const pl_lanes square = value[i] * value[i], whole = sum[i] + square, part = whole - sum[i];
+		sum[PL_OUTPUTS + i] += (sum[i] - (whole - part)) + (square - part);
+		sum[i] = whole;
+		sum[2 * PL_OUTPUTS + i] = value[i];
+	}
+}
+
 #if PL_FLUSHES > 0 && PL_FLUSHES_BESIDE
 /* Beside others of their part states are compared in each instance by itself. */
 static PL_APART void PL(lanes_flush_beside)(pl_lanes *y)
@@ -289,10 +317,12 @@ PL_LANES_INLINE void PL(lanes_flush)(const PL(steps_ahead) *ahead, size_t k, pl_
 	(void)ahead, (void)k, (void)y;
 }
 
-/* Instances from `first` on, `groups` a lane, step by step with outputs of each */
-PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out, const int groups)
+/* Instances from `first` on, `groups` a lane, step by step with outputs of each, or sums of these */
+PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out, real *sum,
+				  const int groups)
 {
 	pl_lanes y[PL_GROUPS][PL_STEPPED], peak[PL_GROUPS][PL_OUTPUTS], factor[PL_GROUPS][PL_HAS(PL_LANES)];
+	pl_lanes part[PL_GROUPS][3 * PL_OUTPUTS];
 #if PL_PEAKS > 0
 	pl_lanes start[PL_GROUPS][PL_STATES], before[PL_GROUPS][PL_OUTPUTS];
 #endif
@@ -301,6 +331,9 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead)
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
 		PL(lanes_take)(b, first + (size_t)g * PL_AT_ONCE, y[g], factor[g], peak[g]);
+		if (sum) {
+			PL(sums_move)(b, first + (size_t)g * PL_AT_ONCE, sum, part[g], 0);
+		}
 #if PL_PEAKS > 0
 		PL(lanes_out)(y[g], factor[g], ahead->now[0], before[g]);
 #endif
@@ -313,13 +346,13 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead)
 #endif
 #if PL_EVENTS
 			PL(lanes_step_all)(b, first + (size_t)g * PL_AT_ONCE, ahead, k, y[g], factor[g], b->peak
-					|| out);
+					|| out || sum);
 #else
 			PL(lanes_step)(y[g], factor[g], ahead->now[k]);
 #endif
 			PL(lanes_flush)(ahead, k, y[g]);
 		}
-		if (b->peak || out) {
+		if (b->peak || out || sum) {
 			PL_LANES_UNROLL
 			for (g = 0; g < groups; g++) {
 				const size_t j = first + (size_t)g * PL_AT_ONCE;
@@ -336,6 +369,9 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead)
 				PL(lanes_widen)(peak[g], value, PL_OUTPUTS);
 #endif
 				PL(lanes_report)(b, j, value, out);
+				if (sum) {
+					PL(sums_add)(part[g], value);
+				}
 			}
 			out = out ? out + PL_OUTPUTS * b->count : NULL;
 		}
@@ -343,6 +379,9 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead)
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
 		PL(lanes_give)(b, first + (size_t)g * PL_AT_ONCE, y[g], peak[g]);
+		if (sum) {
+			PL(sums_move)(b, first + (size_t)g * PL_AT_ONCE, sum, part[g], 1);
+		}
 	}
 }
 
@@ -350,7 +389,7 @@ PL_LANES_INLINE void PL(lanes_go)(PL_INSTANCES *b, size_t first, PL(steps_ahead)
 static void PL(batch_one_by_one)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
 {
 	PL(ahead_acting)(ahead);
-	PL(lanes_go)(b, first, ahead, out, 1);
+	PL(lanes_go)(b, first, ahead, out, NULL, 1);
 }
 
 /* After steps of which only the peaks are wanted: those at ends of steps are known before extremes are looked for, and
@@ -417,29 +456,49 @@ PL_LANES_INLINE void PL(lanes_event_free)(PL_INSTANCES *b, size_t first, PL(step
 }
 #define PL_GO(groups) PL(lanes_event_free)(b, first, ahead, groups)
 #else
-#define PL_GO(groups) PL(lanes_go)(b, first, ahead, out, groups)
+#define PL_GO(groups) PL(lanes_go)(b, first, ahead, out, PL_EVENTS ? sum : NULL, groups)
 #endif
 
-static void PL(batch_block)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
+static void PL(batch_block)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out, real *sum)
 {
 	PL_GO(PL_GROUPS);
-	(void)out;
+	(void)out, (void)sum;
 }
 
 #if PL_GROUPS > 1
 static void PL(batch_group)(PL_INSTANCES *b, size_t first, PL(steps_ahead) *ahead, real *out)
 {
+	real *const sum = NULL;
 	PL_GO(1);
-	(void)out;
+	(void)out, (void)sum;
 }
 #endif
 
-/* As many whole blocks as there are, then single groups */
-static void PL(batch_go)(PL_INSTANCES *b, PL(steps_ahead) *ahead, real *out)
+#if PL_FACTORS > 0 && !PL_EVENTS
+/* Their numbers fill the registers by a group. With events there are no more groups, and one text takes both. */
+static void PL(batch_sums)(PL_INSTANCES *b, PL(steps_ahead) *ahead, real *sum)
+{
+	size_t first;
+#if PL_PEAKS > 0
+	PL(ahead_acting)(ahead);
+#endif
+	for (first = 0; first < b->count; first += PL_AT_ONCE) {
+		PL(lanes_go)(b, first, ahead, NULL, sum, 1);
+	}
+}
+#endif
+
+/* As many whole blocks as there are, then single groups; with sums, or outputs, or neither */
+static void PL(batch_go)(PL_INSTANCES *b, PL(steps_ahead) *ahead, real *out, real *sum)
 {
 	size_t first = 0;
 #if PL_EVENTS
-	first = PL(all_alone)(b, ahead, out);
+	first = PL(all_alone)(b, ahead, out, sum);
+#elif PL_FACTORS > 0
+	if (sum) {
+		PL(batch_sums)(b, ahead, sum);
+		return;
+	}
 #endif
 #if PL_PEAKS > 0
 	for (; out && first < b->count; first += PL_AT_ONCE) {
@@ -447,7 +506,7 @@ static void PL(batch_go)(PL_INSTANCES *b, PL(steps_ahead) *ahead, real *out)
 	}
 #endif
 	for (; first < b->count && b->count - first > (PL_GROUPS - 1) * PL_AT_ONCE; first += PL_GROUPS * PL_AT_ONCE) {
-		PL(batch_block)(b, first, ahead, out);
+		PL(batch_block)(b, first, ahead, out, sum);
 	}
 #if PL_GROUPS > 1
 	for (; first < b->count; first += PL_AT_ONCE) {
@@ -496,7 +555,8 @@ static void PL(share)(PL_TYPE *s, const real *u, PL(steps_ahead) *ahead)
 	}
 }
 
-void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
+/* n steps, with sums as NAME_many has them, or without */
+static void PL(batch_steps)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out, real *sum)
 {
 	PL(steps_ahead) ahead;
 	for (; n > 0; n -= ahead.steps) {
@@ -507,7 +567,7 @@ void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
 #if PL_INPUTS > 0
 		u += ahead.steps * PL_INPUTS;
 #endif
-		PL(batch_go)(b, &ahead, out);
+		PL(batch_go)(b, &ahead, out, sum);
 		out = out ? out + ahead.steps * PL_OUTPUTS * b->count : NULL;
 	}
 }

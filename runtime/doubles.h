@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* doubles.h: the runtime's names for double again, behind floats.h. */
 #undef pl_accumulate
+#undef pl_sum_squares
 #undef pl_block
 #undef pl_cached
 #undef pl_cached_guards

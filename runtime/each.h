@@ -65,7 +65,7 @@ void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
 	PL(batch_begin)(b, j, &one);
 }
 
-static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out)
+static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *out, real *sum)
 {
 	real now[PL_OUTPUTS];
 	size_t i;
@@ -78,29 +78,33 @@ static void PL(batch_report)(PL_INSTANCES *b, size_t j, const PL_TYPE *s, real *
 		if (b->peak && pl_magnitude(now[i]) > b->peak[at]) {
 			b->peak[at] = pl_magnitude(now[i]);
 		}
+		if (sum) {
+			pl_sum_squares(sum + at, PL_OUTPUTS * b->count, now[i]);
+		}
 	}
 }
 
-static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, real *out)
+static void PL(batch_one)(PL_INSTANCES *b, size_t j, size_t n, const real *u, real *out, real *sum)
 {
 	PL_TYPE one;
 	PL(batch_take)(b, j, &one);
 	for (; n > 0; n--) {
 		PL(step)(&one PL_GIVEN);
 		u = u ? u + PL_INPUTS : NULL;
-		if (out || b->peak) {
-			PL(batch_report)(b, j, &one, out);
+		if (out || sum || b->peak) {
+			PL(batch_report)(b, j, &one, out, sum);
 		}
 		out = out ? out + PL_OUTPUTS * b->count : NULL;
 	}
 	PL(batch_give)(b, j, &one);
 }
 
-void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
+/* n steps, with sums as NAME_many has them, or without */
+static void PL(batch_steps)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out, real *sum)
 {
 	size_t j;
 	for (j = 0; j < b->count; j++) {
-		PL(batch_one)(b, j, n, PL_THE_INPUTS, out);
+		PL(batch_one)(b, j, n, PL_THE_INPUTS, out, sum);
 	}
 	if (b->count > 0) {
 		PL(batch_take)(b, 0, &b->shared);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT-0 */
 /* floats.h: the runtime's names for float in the place of those for double, until doubles.h. */
 #define pl_accumulate pl_accumulatef
+#define pl_sum_squares pl_sum_squaresf
 #define pl_block pl_blockf
 #define pl_cached pl_cachedf
 #define pl_cached_guards pl_cachedf_guards

@@ -204,10 +204,17 @@ static void PL(batch_begin)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
 }
 
 #if PL_FACTORS > 0
+static void PL(batch_keep)(PL_INSTANCES *b, size_t j, const PL_TYPE *s)
+{
+	size_t i;
+	for (i = 0; i < PL_FACTORS && b->factors; i++) {
+		memcpy(&b->factors[i * b->count + j], (const char *)s + PL(factor_at)[i], sizeof(real));
+	}
+}
+
 int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
 {
 	PL_TYPE one = b->shared;
-	size_t i;
 #if PL_TUNED
 	if (!(c->h == b->shared.coeffs.h)) {
 		return PL_NO_STEP;
@@ -216,10 +223,14 @@ int PL(batch_use)(PL_INSTANCES *b, size_t j, const PL(coeffs) *c)
 	if (!b->factors) {
 		return PL_NO_STEP;
 	}
+#if PL_EVENTS /* another region may have its state */
+	PL(batch_take)(b, j, &one);
+	PL(use)(&one, c);
+	PL(batch_give)(b, j, &one);
+#else
 	one.coeffs = *c;
-	for (i = 0; i < PL_FACTORS; i++) {
-		memcpy(&b->factors[i * b->count + j], (const char *)&one + PL(factor_at)[i], sizeof(real));
-	}
+#endif
+	PL(batch_keep)(b, j, &one);
 	return 0;
 }
 #endif
@@ -230,7 +241,7 @@ void PL(batch_init)(PL_INSTANCES *b)
 	PL(init)(&b->shared);
 	for (j = 0; j < b->count; j++) {
 #if PL_FACTORS > 0
-		(void)PL(batch_use)(b, j, &b->shared.coeffs);
+		PL(batch_keep)(b, j, &b->shared);
 #endif
 		PL(batch_begin)(b, j, &b->shared);
 	}
@@ -239,6 +250,9 @@ void PL(batch_init)(PL_INSTANCES *b)
 void PL(batch_set)(PL_INSTANCES *b, size_t j, const real y[PL_STATES])
 {
 	PL_TYPE one = b->shared;
+#if PL_FACTORS > 0
+	PL(batch_factors)(b, j, &one);
+#endif
 	PL(set)(&one, PL(time)(&b->shared), y);
 	PL(batch_begin)(b, j, &one);
 }
@@ -325,7 +339,7 @@ static void PL(out_alone)(const PL_INSTANCES *b, size_t j, const PL(steps_ahead)
 #endif
 
 /* Each instance by itself over the steps ahead: with few lanes that takes less. */
-static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, real *out)
+static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahead, real *out, real *sum)
 {
 	const real *u = ahead->u;
 	real row[PL_STEPPED];
@@ -337,7 +351,7 @@ static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahe
 	for (k = 0; k < ahead->steps; k++) {
 		PL(step)(&one PL_GIVEN);
 		u += PL_INPUTS;
-		if (out || b->peak) {
+		if (out || sum || b->peak) {
 			real now[PL_OUTPUTS];
 			PL(out)(&one, now);
 			for (i = 0; i < PL_OUTPUTS; i++) {
@@ -347,6 +361,9 @@ static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahe
 				if (b->peak) {
 					b->peak[i * b->count + j] = pl_larger_size(b->peak[i * b->count + j], now[i]);
 				}
+				if (sum) {
+					pl_sum_squares(sum + i * b->count + j, PL_OUTPUTS * b->count, now[i]);
+				}
 			}
 		}
 	}
@@ -354,11 +371,11 @@ static void PL(each_alone)(PL_INSTANCES *b, size_t j, const PL(steps_ahead) *ahe
 	PL(batch_give)(b, j, &one);
 }
 
-static size_t PL(all_alone)(PL_INSTANCES *b, const PL(steps_ahead) *ahead, real *out)
+static size_t PL(all_alone)(PL_INSTANCES *b, const PL(steps_ahead) *ahead, real *out, real *sum)
 {
 	size_t j = 0;
 	for (; PL_AT_ONCE < PL_LANES_PAY && j < b->count; j++) {
-		PL(each_alone)(b, j, ahead, out);
+		PL(each_alone)(b, j, ahead, out, sum);
 	}
 	return j;
 }

@@ -4,6 +4,7 @@
  *
  *     PL_DRIVES                      whether there is NAME_many
  *     PL_FACTORS                     above 0: member factors has so many numbers of an instance
+ *     PL(batch_steps)(b, n, u, out, sum)     PL(batch) with sums as NAME_many has them, or NULL
  *     PL_NOW                         numbers of a step that PL(batch_share) writes
  *     PL(many_hold)(b, u)            PL_RAMPS: PL(hold) of all
  *     PL(many_use)(b, j, c, out)     what params decide of instance j, and then its outputs; 0, or why not */
@@ -20,6 +21,11 @@ int PL(batch_status)(const PL_INSTANCES *b, size_t j)
 	PL_TYPE one;
 	PL(batch_take)(b, j, &one);
 	return PL(status)(&one);
+}
+
+void PL(batch)(PL_INSTANCES *b, size_t n PL_TAKEN_ROWS, real *out)
+{
+	PL(batch_steps)(b, n PL_GIVEN, out, NULL);
 }
 
 #if PL_DRIVES
@@ -48,10 +54,10 @@ static int PL(many_retune)(void *b, size_t j, const real *params, real *out)
 	return status == 0 ? PL(many_use)((PL_INSTANCES *)b, j, &c, out) : status;
 }
 
-static void PL(many_run)(void *b, size_t n, const real *u, real *out)
+static void PL(many_run)(void *b, size_t n, const real *u, real *out, real *sum)
 {
 	(void)u;
-	PL(batch)((PL_INSTANCES *)b, n PL_GIVEN, out);
+	PL(batch_steps)((PL_INSTANCES *)b, n PL_GIVEN, out, sum);
 }
 
 static int PL(many_status)(const void *b, size_t j)

@@ -45,6 +45,15 @@ static inline PL_REAL pl_accumulate(PL_REAL sum, PL_REAL term, PL_REAL small, PL
     return result;
 }
 
+/* Adds value^2 to sum[0], of which sum[apart] is what rounding took; value goes to sum[2 apart]. */
+static inline void pl_sum_squares(PL_REAL *sum, size_t apart, PL_REAL value)
+{
+    const PL_REAL square = value * value, whole = sum[0] + square, part = whole - sum[0];
+    sum[apart] += (sum[0] - (whole - part)) + (square - part);
+    sum[0] = whole;
+    sum[2 * apart] = value;
+}
+
 /* ---- root.c: lengths of steps --------------------------------------------------------------------------- */
 
 /* Returns the n-th root of a within 6 %, the same bits on every target; a > 0 is a normal number, n >= 1. */
@@ -465,7 +474,8 @@ typedef struct pl_many {
     void (*init)(void *b, size_t count, PL_REAL *y, PL_REAL *factors, PL_REAL *peak); /* t = 0, as the spec says */
     void (*hold)(void *b, const PL_REAL *u); /* the samples before the first step; NULL where no input is a ramp */
     int (*retune)(void *b, size_t j, const PL_REAL *params, PL_REAL *out); /* instance j; out: its outputs now */
-    void (*run)(void *b, size_t n, const PL_REAL *u, PL_REAL *out); /* n steps; out: n x outputs x count, or NULL */
+    /* n steps; out: n x outputs x count, or NULL; sum: as NAME_kernel has it behind the first, or NULL */
+    void (*run)(void *b, size_t n, const PL_REAL *u, PL_REAL *out, PL_REAL *sum);
     int (*status)(const void *b, size_t j);
     int shared; /* numbers of a row that NAME_batch_share writes for NAME_kernel */
     void (*share)(void *b, size_t n, const PL_REAL *u, PL_REAL *now);

@@ -3,6 +3,7 @@
  * has it.  Included by the file of the model behind lanes.h and search.h, with
  *
  *     PL_STATES, PL_SIZE         states; entries of x, of which they are the first: `now` has the others
+ *     PL_LANES                   the last of x that are params of each instance
  *     PL_REGIONS, PL_CAPPED      as search.h has them; regions are few, and each has code of its own */
 #include "numbers.h"
 
@@ -53,6 +54,10 @@ PL_LANES_INLINE pl_lanes_truth PL(lanes_step)(pl_lanes *y, const pl_lanes *facto
 	PL_UNROLL
 	for (i = 0; i < PL_SIZE; i++) {
 		x[i] = i < PL_STATES ? y[i] : pl_lanes_all(now[i < PL_STATES ? 0 : i - PL_STATES]);
+	}
+	PL_UNROLL
+	for (i = 0; i < PL_LANES; i++) {
+		x[PL_SIZE - PL_LANES + i] = factor[i];
 	}
 	PL_CASES(0)
 #if PL_REGIONS > 3

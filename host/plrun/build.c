@@ -15,6 +15,7 @@ struct toolchain {
 	const char *plgen;
 	const char **compiler;          /* its words and flags, NULL-terminated */
 	size_t compiler_words;
+	const char *wide;               /* a flag for lanes as wide as this machine's; NULL: the compiler's own */
 	const char *runtime;            /* the folder of plrt.h */
 	const char **source;            /* the .c files there */
 	size_t sources;
@@ -202,6 +203,25 @@ static void read_runtime(struct toolchain *t)
 	free(name);
 }
 
+static bool asks_for_flags(void)
+{
+	const char *flags = getenv("CFLAGS");
+	return flags && flags[strspn(flags, " \t\n")];
+}
+
+/* Sums over wider lanes have the same bits, which is why no journal knows of them. */
+static const char *flag_for_lanes(const char *compiler)
+{
+	const char *name = strrchr(compiler, '/') + 1;
+	if (asks_for_flags() || !(strstr(name, "gcc") || strstr(name, "clang") || strstr(name, "ccache")))
+		return NULL;
+#if defined(__x86_64__) && defined(__GNUC__)
+	return __builtin_cpu_supports("avx512f") ? "-mavx512f" : __builtin_cpu_supports("avx2") ? "-mavx2" : NULL;
+#else
+	return NULL;
+#endif
+}
+
 /* A compiler is its words, and of the file of the first its place, size and time: another version is another one. */
 static void read_compiler(struct toolchain *t)
 {
@@ -213,6 +233,7 @@ static void read_compiler(struct toolchain *t)
 	hash_text(&t->key, real);
 	hash_bytes(&t->key, &about.st_size, sizeof about.st_size);
 	hash_bytes(&t->key, &about.st_mtim, sizeof about.st_mtim);
+	t->wide = flag_for_lanes(real);
 	add_word(t, "-O2");
 	add_word(t, "-fPIC");
 	add_word(t, "-w");
@@ -225,8 +246,7 @@ static void read_compiler(struct toolchain *t)
 static void check_archive(struct toolchain *t)
 {
 	struct stat about;
-	const char *flags = getenv("CFLAGS");
-	if (!t->archive || (flags && flags[strspn(flags, " \t\n")]) || access(t->archive, R_OK) != 0 ||
+	if (!t->archive || asks_for_flags() || access(t->archive, R_OK) != 0 ||
 	    stat(t->archive, &about) != 0 || is_later(t->newest, about.st_mtim)) {
 		t->archive = NULL;
 		return;
@@ -432,15 +452,23 @@ static char *compile_runtime(const struct toolchain *t, bool single, const char 
 	return error;
 }
 
+/* The flag for code that has lanes; else NULL */
+static const char *wide_lanes(const struct toolchain *t, const struct code *c)
+{
+	return strstr(c->text, "pl_lanes") ? t->wide : NULL;
+}
+
 static char *compile_model(const struct toolchain *t, const struct code *c, const char *work, const char *runtime,
 			   const char *object)
 {
 	char *source = format("%s/model.c", work), *made = format("%s/model.so", work), *error;
-	const char *word[] = { "-shared", "-Wl,-Bsymbolic", source, runtime, "-o", made, "-lm" };
+	const char *wide = wide_lanes(t, c);
+	const char *word[] = { "-shared", "-Wl,-Bsymbolic", source, runtime, "-o", made, "-lm",
+			       "-ffp-contract=off", wide };
 	if (!write_text(source, c->text))
 		error = format("cannot write '%s': %s", source, strerror(errno));
 	else
-		error = run_compiler(t, word, sizeof word / sizeof *word);
+		error = run_compiler(t, word, sizeof word / sizeof *word - (wide ? 0 : 2));
 	if (!error && rename(made, object) != 0)
 		error = format("cannot write '%s': %s", object, strerror(errno));
 	return error;
@@ -479,6 +507,7 @@ char *compile(const struct toolchain *t, const struct code *c, bool anew, char *
 	struct hash key = t->key;
 	char *runtime = format("%s/runtime%s-%s.o", cache_folder(), c->single ? "f" : "", hash_name(&t->key));
 	hash_text(&key, c->text);
+	hash_text(&key, wide_lanes(t, c) ? t->wide : "");
 	char *object = format("%s/%s-%s.so", cache_folder(), c->name, hash_name(&key));
 	*error = NULL;
 	if (!anew && access(object, R_OK) == 0)

@@ -95,14 +95,11 @@ static int tune(const struct lanes *l, size_t j, const double *params, struct st
 	return status;
 }
 
-static void take_steps(const struct lanes *l, const double *u, uint64_t k, size_t n, struct stats *stats)
+/* Of a model in float, whose sums are in double */
+static void take_rows(const struct lanes *l, const double *u, uint64_t k, size_t n, struct stats *stats)
 {
 	const struct machine *m = l->machine;
-	const void *rows = m->inputs ? as_real(l, u, n * (size_t)m->inputs, l->u) : NULL;
-	if (m->single)
-		m->manyf->run(l->b, n, rows, l->out);
-	else
-		m->many->run(l->b, n, rows, l->out);
+	m->manyf->run(l->b, n, m->inputs ? as_real(l, u, n * (size_t)m->inputs, l->u) : NULL, l->out, NULL);
 	const size_t row = (size_t)m->own_outputs * l->count;
 	const double *out = as_doubles(l, n * row);
 	for (int i = 0; i < m->outputs; i++) {
@@ -110,8 +107,6 @@ static void take_steps(const struct lanes *l, const double *u, uint64_t k, size_
 		for (size_t j = 0; j < l->count; j++)
 			stats_column(&stats[j], i, k, n, column + j, row);
 	}
-	for (size_t j = 0; j < l->count; j++)
-		stats[j].rows = k + n;
 }
 
 /* ---- on a device ---- */
@@ -131,7 +126,7 @@ static void share_steps(void *who, size_t n, double *now)
 	}
 }
 
-/* Sums as the kernel has them, sum, squares in two parts, last value, from stats or to them */
+/* Sums as NAME_kernel has them, sum, squares in two parts, last value, from stats or to them */
 static void move_sums(const struct lanes *l, double *sum, struct stats *stats, bool back)
 {
 	const size_t count = l->count, each = (size_t)l->machine->own_outputs * count;
@@ -150,18 +145,37 @@ static void move_sums(const struct lanes *l, double *sum, struct stats *stats, b
 }
 
 /* NULL, or why it could not */
-static char *run_on_device(const struct lanes *l, const struct job *job, struct samples *samples, struct stats *stats)
+static char *run_on_device(const struct lanes *l, const struct job *job, struct samples *samples, double *sum)
 {
 	const struct machine *m = l->machine;
 	const size_t outputs = (size_t)m->own_outputs;
-	double *sum = need(calloc(4 * outputs * l->count, sizeof *sum));
 	const struct batch_arrays arrays = { l->count, (size_t)m->many->rows, (size_t)m->many->factors,
 					     (size_t)m->many->shared, outputs, l->y, l->factors, l->peak, sum };
-	move_sums(l, sum, stats, false);
-	char *error = kernel_run(m->kernel, &arrays, job->steps, share_steps, &(struct shared){ l, samples });
-	for (size_t j = 0; j < l->count && !error; j++)
+	return kernel_run(m->kernel, &arrays, job->steps, share_steps, &(struct shared){ l, samples });
+}
+
+/* NULL, or why a device could not */
+static char *take_steps(const struct lanes *l, const struct job *job, struct samples *samples, struct stats *stats)
+{
+	const struct machine *m = l->machine;
+	const size_t each = (size_t)m->own_outputs * l->count;
+	double *sum = need(calloc(4 * each, sizeof *sum));
+	char *error = NULL;
+	if (!m->single)
+		move_sums(l, sum, stats, false);
+	if (m->kernel)
+		error = run_on_device(l, job, samples, sum);
+	else for (uint64_t k = 1; k <= job->steps; k += STEPS_AT_ONCE) {
+		const size_t n = job->steps - k < STEPS_AT_ONCE ? (size_t)(job->steps - k) + 1 : STEPS_AT_ONCE;
+		const double *u = samples_rows(samples, n);
+		if (m->single)
+			take_rows(l, u, k, n, stats);
+		else
+			m->many->run(l->b, n, u, NULL, sum + each);
+	}
+	for (size_t j = 0; j < l->count; j++)
 		stats[j].rows = job->steps + 1;
-	if (!error)
+	if (!m->single && !error)
 		move_sums(l, sum, stats, true);
 	free(sum);
 	return error;
@@ -172,15 +186,9 @@ char *lanes_run(const struct job *job, size_t count, const double *const *params
 	const struct machine *m = job->machine;
 	struct lanes l = lanes_new(m, count);
 	struct samples *samples = samples_begin(job, hold, &l);
-	char *error = NULL;
 	for (size_t j = 0; j < count; j++)
 		done[j] = tune(&l, j, params[j], &stats[j]) == 0;
-	if (m->kernel)
-		error = run_on_device(&l, job, samples, stats);
-	else for (uint64_t k = 1; k <= job->steps; k += STEPS_AT_ONCE) {
-		const size_t n = job->steps - k < STEPS_AT_ONCE ? (size_t)(job->steps - k) + 1 : STEPS_AT_ONCE;
-		take_steps(&l, samples_rows(samples, n), k, n, stats);
-	}
+	char *error = take_steps(&l, job, samples, stats);
 	for (size_t j = 0; j < count; j++)
 		done[j] = !error && done[j] && stats_in_range(&stats[j]) &&
 			  (m->single ? m->manyf->status(l.b, j) : m->many->status(l.b, j)) == 0;

@@ -49,9 +49,10 @@ by_itself() {
 }
 
 # Events one by one, other steps in lanes: under inputs that are held and that ramp, with a load, friction, a stop
-printf '%s\n' 'model stops' 'param k = 40' 'input p hold first, q' 'coord x, y' 'init x = 0.3, y = -0.2' \
-	"x'' + 0.2*x' + deadzone(x - 0.1*p, -0.5, 0.4)*k + 3*(x - y) = q + 0.3*cos(5*t)" \
-	"y'' + 0.1*y' + 3*(y - x) + 9*y = p" 'output x, y' "output a = x''" 'step 0.02' >"$work/stops.spec"
+printf '%s\n' 'model stops' 'param w = 0.5, g = 0.1, k = 40' 'tunable g, w' 'input p hold first, q' 'coord x, y' \
+	'init x = 0.3, y = -0.2' \
+	"x'' + 0.2*x' + deadzone(x - 0.1*p, -w, 0.4)*k + 3*(x - y) = q + 0.3*cos(5*t)" \
+	"y'' + 0.1*y' + 3*(y - x) + 9*y = p - g" 'output x, y' "output a = x'', g" 'step 0.02' >"$work/stops.spec"
 printf '%s\n' 'model rubs' 'input p hold first, q' 'coord x' 'init x = 0.3' \
 	"x'' + 30*x + friction(x', 0.6, 0.8) = q + p" 'stop between x, ground at 0.5 restitution 0.4' \
 	'step 0.02' >"$work/rubs.spec"
@@ -104,7 +105,7 @@ tests/batch/loaded.spec --anchors 1
 tests/batch/record.spec
 tests/refresh/fast.spec --anchors 1
 models/gear1.spec
-models/stick_slip.spec
+models/stick_slip.spec --tunable F
 ${LONG:+models/two_masses.spec
 models/impact_oscillator.spec
 tests/relative/drive.spec
@@ -551,7 +552,7 @@ fi
 [ -n "${LONG:-}" ] || agrees 0 "${CC:-cc} -std=c99" -O0 models/oscillator.spec
 
 why='no numbers of its region alone show a step to be free of events'
-sed -e 's/^param k = 40/&\ntunable k/' -e '/^output a/d' "$work/stops.spec" >"$work/tuned_stops.spec"
+sed -e 's/^tunable g, w/&, k/' -e '/^output a/d' "$work/stops.spec" >"$work/tuned_stops.spec"
 specs=$work by_itself tuned_stops.spec "$why"
 by_itself models/pendulum.spec 'the remainder is not linear in the state'
 sed -n '/^=== cart_stops$/,/^---$/{/^[=-]/!p;}' "$root/tests/mechanisms/mechanisms.cases" >cart_stops.spec

@@ -69,6 +69,9 @@ step 0.01
 X
 sed '1s/.*/u/' road.csv >u.csv
 sed -e 's/, worst = .*//' -e "s/^y''.*= 0$/& + 0.1*sin(y)/" -e 's/^step/scheme taylor 6\n&/' forced.spec >sine.spec
+# A param that switching functions read is of each instance.
+sed -e 's/, worst = .*//' -e 's/k\*(\|k\*x/100&/; s/100k/100/; s/^tunable.*/tunable k/' \
+	-e "s/ = cos/ + 300*deadzone(x - 0.0001*k, -0.01, 0.01)&/" forced.spec >gap.spec
 # alone K OPTIONS: the line of a run with k = K
 alone() {
 	value=$1
@@ -77,9 +80,12 @@ alone() {
 		NR > 1 { final = final "," $2; rms = rms "," $4; peak = peak "," $7 }
 		END { print value final rms peak ",ok" }'
 }
-for options in '--real double' '--real float' '--show thrust,x' '--show x,y' '--math own'; do
-	spec=forced.spec
-	[ "$options" != '--math own' ] || spec=sine.spec
+for options in '--real double' '--real float' '--show thrust,x' '--show x,y' '--show y,x' '--math own'; do
+	case $options in
+		'--math own') spec=sine.spec ;;
+		'--show y,x') spec=gap.spec ;;
+		*) spec=forced.spec ;;
+	esac
 	# shellcheck disable=SC2086
 	run $spec 15 --input u.csv $options --sweep k=80:120:41 --peak --jobs 1 | cut -d, -f 2- >lanes.csv
 	for value in 80 91 99 120; do

@@ -3,7 +3,9 @@
  * many instances as there are lanes, from the arrays and back. */
 #include "inner.h"
 #include "emit/linear/blocks.h"
+#include "emit/regions/regions.h"
 #include "emit/series/series.h"
+#include "model/tunable/tuning.h"
 #include "step/exponential/recipe.h"
 #include "step/linear/rows.h"
 #include "step/series/expansion.h"
@@ -118,6 +120,31 @@ static void plan_series(struct batch *b)
 	b->lanes = b->factors;
 }
 
+/* Params that regions read, and those that outputs read alone */
+static void plan_regions(struct batch *b)
+{
+	const struct emitter *e = b->e;
+	const struct tuning *t = e->model->params.held;
+	int params;
+	const char **text = params_in_x(e, &params);
+	b->shared = e->step->layout.size - e->system->states;
+	b->shared_text = ARRAY(const char *, (size_t)b->shared + 1);
+	for (int k = 0; k < params; k++)
+		batch_factor(b, text[k]);
+	b->lanes = b->factors;
+	for (int k = 0; t && k < t->params; k++)
+		batch_factor(b, param_text(e, k));
+}
+
+/* Does an output read a param, which is an input that no step is given? */
+static bool takes_params(const struct emitter *e, const struct tape *t)
+{
+	bool any = false;
+	for (int i = e->model->spec->count.inputs; i < e->system->inputs; i++)
+		any = any || tape_reads(t, TAPE_SAMPLE, i, -1) || tape_reads(t, TAPE_INPUT, i, -1);
+	return any;
+}
+
 /* Outputs as rows over states and what all share; NULL: with regions some are more than that */
 static struct tape *outputs_as_rows(const struct emitter *e)
 {
@@ -128,7 +155,7 @@ static struct tape *outputs_as_rows(const struct emitter *e)
 			return NULL;
 		tape_set(t, format("out[%d]", i), tape_of_row(t, e->step, output), 13, output->name);
 	}
-	return leaves_lanes(e) && tape_reads(t, TAPE_TABLE, -1, -1) ? NULL : t;
+	return leaves_lanes(e) && (tape_reads(t, TAPE_TABLE, -1, -1) || takes_params(e, t)) ? NULL : t;
 }
 
 /* Of a step that loops: what acts, as it stands in `now` */
@@ -152,8 +179,7 @@ struct batch plan_batch(const struct emitter *e)
 	struct step now = *e->step;             /* what instances share are load states of now, not a refresh's */
 	now.refresh = NULL;
 	if (has_regions(e)) {
-		b.shared = e->step->layout.size - e->system->states;
-		b.shared_text = ARRAY(const char *, (size_t)b.shared + 1);
+		plan_regions(&b);
 	} else if (has_series(e)) {
 		plan_series(&b);
 	} else {

@@ -4,6 +4,7 @@
 #include "emit/steps.h"
 #include "model/regions/switching_functions.h"
 #include "model/regions/regions.h"
+#include "step/exponential/recipe.h"
 #include "step/tunable/tuned.h"
 
 #include <string.h>
@@ -406,30 +407,56 @@ void emit_event_check(const struct emitter *e)
 
 /* ---- the same over lanes of a batch: each in its region, those left that may have an event ---- */
 
-/* A sum that no state is part of is one number for all lanes. */
+const char **params_in_x(const struct emitter *e, int *count)
+{
+	const char **x = operands_of_x(e);
+	int first = e->step->layout.size;
+	while (first > e->system->states && strncmp(x[first - 1], "s->coeffs.", 10) == 0)
+		first--;
+	for (int j = e->system->states; j < first; j++)
+		if (strncmp(x[j], "s->coeffs.", 10) == 0)
+			internal_error(e->step, "params are the last entries of x");
+	*count = e->step->layout.size - first;
+	return x + first;
+}
+
+/* Is an entry of x of each instance: a state, a param? */
+static bool is_own_entry(const struct emitter *e, int j)
+{
+	int params;
+	params_in_x(e, &params);
+	return j < e->system->states || j >= e->step->layout.size - params;
+}
+
+/* A sum of what all instances share is one number for all lanes. */
 static const char *over_lanes(const struct emitter *e, const struct region_tables *t, int row,
 			      const char *const *operand, const char *text)
 {
 	bool any = false;
-	for (int j = 0; j < e->system->states; j++)
-		any = any || (operand[j] && acts_at(t, row, j));
+	for (int j = 0; j < e->step->layout.size; j++)
+		any = any || (is_own_entry(e, j) && operand[j] && acts_at(t, row, j));
 	return any ? text : format("pl_lanes_all(%s)", text);
 }
 
-/* Of states lanes, of what all instances share numbers */
+/* Of states and params lanes, of what all instances share numbers */
 static const char **operands_over_lanes(const struct emitter *e)
 {
 	const char **x = operands_of_x(e);
-	for (int j = e->system->states; j < e->step->layout.size; j++)
+	int params, size = e->step->layout.size;
+	params_in_x(e, &params);
+	for (int j = e->system->states; j < size - params; j++)
 		x[j] = *x[j] ? format("now[%d]", j - e->system->states) : "";
+	for (int k = 0; k < params; k++)
+		x[size - params + k] = format("factor[%d]", k);
 	return x;
 }
 
 static const char **sizes_over_lanes(const struct emitter *e, const char *const *x)
 {
 	const char **size = magnitudes(e, x);
-	for (int j = 0; j < e->system->states; j++)
-		size[j] = format("pl_lanes_size(%s)", x[j]);
+	for (int j = 0; j < e->step->layout.size; j++)
+		if (is_own_entry(e, j))
+			size[j] = format("pl_lanes_size(%s)", x[j]);
 	return size;
 }
 
@@ -480,8 +507,9 @@ static void emit_region_over_lanes(const struct emitter *e, const struct pieces 
 	for (int i = 0; i < e->step->layout.size; i++) {
 		const char *end = row_text(&l.full, i, x, NULL, 22);
 		if (i < states || is_read_at_end(e, &l, i))
-			say(e, "        const %s end%d = %s;  /* %s */\n", i < states ? "pl_lanes" : "double", i,
-			    i < states ? over_lanes(e, &l.full, i, x, end) : end, name[i]);
+			say(e, "        const %s end%d = %s;  /* %s */\n",
+			    is_own_entry(e, i) ? "pl_lanes" : "double", i,
+			    is_own_entry(e, i) ? over_lanes(e, &l.full, i, x, end) : end, name[i]);
 	}
 	for (int i = 0; i < functions_of(e); i++)
 		emit_function_over_lanes(e, p, &l, region, i);

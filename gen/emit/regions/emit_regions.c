@@ -468,8 +468,10 @@ void emit_lanes_of_regions(const struct emitter *e)
 		emit_lanes_check(e);
 		return;
 	}
+	int params;
+	params_in_x(e, &params);
 	emit_sizes(e, "unmet_lanes.h", { "STATES", e->system->states }, { "SIZE", e->step->layout.size },
-		   { "REGIONS", regions_of(e)->regions }, { "CAPPED", capped_entries(e) });
+		   { "LANES", params }, { "REGIONS", regions_of(e)->regions }, { "CAPPED", capped_entries(e) });
 	say(e, "#include \"unmet_lanes.h\"\n");
 }
 

@@ -24,6 +24,8 @@ void emit_region_at(const struct emitter *e);
 /* For batches: what instances share of a step, x but its states; a step over lanes that leaves those with events */
 void emit_shared_of_regions(const struct emitter *e);
 void emit_lanes_of_regions(const struct emitter *e);
+/* The last entries of x that are params, which each instance has of its own: factors of a batch, in this order */
+const char **params_in_x(const struct emitter *e, int *count);
 
 /* emit_parts.c: of independent parts, each as it would be alone */
 void emit_part_tables(const struct emitter *e);
