@@ -392,6 +392,7 @@ enum { MET_SIZE = 8, MET_TERMS = 17 };
 #define PL_EACH
 #define PL_MEETS 1
 #define PL_ENTRIES
+#define PL_PAIRED m->size
 #define PL_MOST_SIZE MET_SIZE
 #define PL_MOST_TERMS MET_TERMS
 #define PL_DOT(row, x) sum_of(m->size, row, x)

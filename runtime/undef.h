@@ -43,10 +43,12 @@
 #undef PL_MEETS
 #undef PL_MOST_SIZE
 #undef PL_MOST_TERMS
+#undef PL_PAIRED
 #undef PL_MOST_GUARDS
 #undef PL_MOST_HOLDS
 #undef PL_KEPT
 #undef PL_MATRIX
+#undef PL_ROUNDED
 #undef PL_ROWS_OF_ALL
 #undef PL_SLOTS
 #undef PL_BASE
