@@ -8,7 +8,7 @@
 void pl_switching_follow_d(const pl_switching *m, int count, const pl_crossing *crossing, real *x, pl_contact *c,
 						   pl_variation *v)
 {
-	const real *const end = v->work + (v->degree + 3) * m->size; /* of vary_piece */
+	const real *const end = end_of_piece(m, v);
 	instant at;
 	real done = 0;
 	int i, k;

@@ -185,28 +185,85 @@ static void end_event(const searched *m, instant *at)
 
 /* ---- between events ---- */
 
-/* S by tau, x beginning at z, whose polynomial over it is in `series` */
-static void vary_part(const searched *m, const instant *at, real tau, const real *series)
+/* x where the last piece has ended, of vary_piece */
+static real *end_of_piece(const searched *m, const pl_variation *v)
+{
+	return v->work + (v->degree + 3) * m->size;
+}
+
+/* Entries of A that are not 0, row by row, and one behind them */
+static void list_acting(const searched *m, const instant *at)
+{
+	const real *A = matrix_now(m, at);
+	pl_varied *to = at->v->acting;
+	int i, j;
+	for (i = 0; i < m->size; i++) {
+		for (j = 0; j < m->size; j++, A++) {
+			if (*A < 0 || *A > 0) {
+				to->row = (unsigned short)i;
+				to->column = (unsigned short)j;
+				to->value = *A;
+				to++;
+			}
+		}
+	}
+	to->row = (unsigned short)m->size;
+}
+
+/* The next term of a Taylor polynomial, part (A term + next), which is added to `sum`.  Whether it is but rounding, as
+ * then are those that follow: each is at most what rounding of all entries would become. */
+static inline int add_term(int n, const pl_varied *acting, real part, const real *term, real *next, real *sum)
+{
+	int i;
+	for (i = 0; i < n; i++) {
+		real turned = next[i];
+		for (; acting->row == i; acting++) {
+			turned += acting->value * term[acting->column];
+		}
+		turned *= part;
+		next[i] = turned;
+		sum[i] += turned;
+	}
+	for (i = 0; i < n && magnitude(next[i]) <= REAL_EPSILON / 8 * magnitude(sum[i]); i++) {
+	}
+	return i == n;
+}
+
+/* z, where x begins, and S by tau, by their Taylor polynomials */
+static void vary_part(const searched *m, const instant *at, real tau, real *z)
 {
 	const pl_variation *v = at->v;
 	const int n = m->size, *first = v->first + at->c->matrix;
-	const real *A = matrix_now(m, at);
-	real *term = v->work, *next = term + n;
-	int p, k, i, j;
+	real *const series = v->work + 2 * n;
+	int p, k, i, orders = 0, is_small = 0;
+	for (i = 0; i < n; i++) {
+		series[i] = z[i];
+	}
+	for (; orders < v->degree && !is_small; orders++) {
+		real *const next = series + (orders + 1) * n;
+		for (i = 0; i < n; i++) {
+			next[i] = 0;
+		}
+		is_small = add_term(n, v->acting, tau / (real)(orders + 1), next - n, next, z);
+	}
 	for (p = 0; p < v->columns; p++, first += v->matrices + OF_ALL) {
-		real *S = v->S + (ptrdiff_t)p * n;
+		real *const S = v->S + (ptrdiff_t)p * n, *term = v->work, *next = term + n;
+		const int varies = first[0] < first[1] ? orders : 0;
 		for (i = 0; i < n; i++) {
 			term[i] = S[i];
 		}
-		for (k = 0; k < v->degree; k++) {
-			pl_multiply(n, n, A, term, next);
-			for (j = first[0]; j < first[1]; j++) {
-				next[v->entry[j].row] += v->entry[j].value * series[k * n + v->entry[j].column];
-			}
+		is_small = 0;
+		for (k = 0; k < v->degree && !(is_small && k > varies); k++) {
+			real *const last = term;
 			for (i = 0; i < n; i++) {
-				term[i] = next[i] * (tau / (real)(k + 1));
-				S[i] += term[i];
+				next[i] = 0;
 			}
+			for (i = first[0]; i < first[1] && k <= orders; i++) {
+				next[v->entry[i].row] += v->entry[i].value * series[k * n + v->entry[i].column];
+			}
+			is_small = add_term(n, v->acting, tau / (real)(k + 1), term, next, S);
+			term = next;
+			next = last;
 		}
 	}
 }
@@ -237,14 +294,13 @@ static void vary_piece(const searched *m, instant *at, real length)
 {
 	pl_variation *v = at->v;
 	const int n = m->size;
-	real *series, *z, shortest;
+	real *z, shortest;
 	int part, parts = 1, i;
 	if (v == NULL) {
 		return;
 	}
 	end_event(m, at);
-	series = v->work + 2 * n;
-	z = series + (v->degree + 1) * n;
+	z = end_of_piece(m, v);
 	shortest = m->h / (real)((uint32_t)1 << m->halvings[at->c->matrix]);
 	while ((real)parts * shortest < length * (1 - REST)) {
 		parts *= 2;
@@ -256,10 +312,9 @@ static void vary_piece(const searched *m, instant *at, real length)
 	if (length >= m->h && vary_step(m, at)) {
 		return;
 	}
+	list_acting(m, at);
 	for (part = 0; part < parts && length > 0; part++) {
-		expand(n, v->degree, matrix_now(m, at), length / (real)parts, z, series);
-		vary_part(m, at, length / (real)parts, series);
-		sum_up(n, v->degree, series, 1, z);
+		vary_part(m, at, length / (real)parts, z);
 	}
 }
 

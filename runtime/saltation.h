@@ -60,6 +60,7 @@ typedef struct pl_variation {
 	PL_REAL *when, *dg;            /* columns each, for work */
 	PL_REAL *noise;                /* size, for work */
 	PL_REAL *work;                 /* PL_VARIATION_WORK(size, degree) */
+	pl_varied *acting;             /* size x size + 1, for work */
 	int segment;                   /* of time */
 	pl_doubt doubt;                /* PL_D_... bits are added; times are after the start of the step */
 	/* An event that has begun, and what met before it: */

@@ -424,6 +424,7 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 {
 	real scale[PL_SIZE], when[PL_COLUMNS_D], dg[PL_COLUMNS_D], noise[PL_SIZE];
 	real work[PL_VARIATION_WORK(PL_SIZE, PL_DEGREE_D)];
+	pl_varied acting[PL_SIZE * PL_SIZE + 1];
 	pl_variation v;
 	int i, p;
 	v.columns = PL_COLUMNS_D;
@@ -443,6 +444,7 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 	v.dg = dg;
 	v.noise = noise;
 	v.work = work;
+	v.acting = acting;
 	for (i = 0; i < PL_SIZE; i++) {
 		scale[i] = i < PL_STATES ? ds->scale[PL_PLACE(i)] : 0;
 		S[PL_COLUMNS_D][i] = 0;
