@@ -105,7 +105,7 @@ static void emit_keeps(const struct emitter *e, const int *at, const int *kept, 
 {
 	const int coords = e->model->relative->written->n;
 	say(e, "\n/* x: rigid-body and relative coordinates, from the states y as written */\n"
-	       "static void $o_keep%s(const double y[$N_STATES], double x[$N_STATES])\n"
+	       "static void $n_keep%s(const double y[$N_STATES], double x[$N_STATES])\n"
 	       "{\n", full ? "" : "_d");
 	for (int order = 0; order < 2; order++)
 		emit_keep(e, order, at + order * coords, kept + order * coords, full);
@@ -122,9 +122,15 @@ static void emit_all_gains(const struct emitter *e, const int *at, const int *ke
 	}
 }
 
-static void emit_written(const struct emitter *e, const int *at, const int *kept)
+/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
+ * was given. NAME_keep_d, NAME_written_d: of derivatives, which are all gain. */
+void emit_conversions(const struct emitter *e)
 {
 	const int coords = e->model->relative->written->n;
+	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
+	find_places(e, 0, at, kept);
+	find_places(e, 1, at + coords, kept + coords);
+	emit_keeps(e, at, kept, true);
 	say(e, "\n/* And back: what they were at the last set, and what was gained since */\n"
 	       "static void $n_written(const $n *s, const double x[$N_STATES], double y[$N_STATES])\n"
 	       "{\n"
@@ -136,26 +142,13 @@ static void emit_written(const struct emitter *e, const int *at, const int *kept
 	for (int order = 0; order < 2 && !e->step->forced; order++)
 		emit_unlinked(e, order, at + order * coords, kept + order * coords, false);
 	say(e, "}\n");
-}
-
-/* NAME_keep, NAME_written: a state is what it was at the last set, and what it has gained since; so get gives what set
- * was given. NAME_keep_d, NAME_written_d: of derivatives, which are all gain. A step of changing loads, which is of
- * derivatives alone, starts from states as written. */
-void emit_conversions(const struct emitter *e)
-{
-	const int coords = e->model->relative->written->n;
-	int *at = ARRAY(int, 2 * (size_t)coords), *kept = ARRAY(int, 2 * (size_t)coords);
-	const struct derivatives *d = e->step->shown->derivatives;
-	find_places(e, 0, at, kept);
-	find_places(e, 1, at + coords, kept + coords);
-	emit_keeps(e, at, kept, true);
-	if (!d || d->regions != e->step)
-		emit_written(e, at, kept);
-	if (!d || !d->varied)
+	const struct derivatives *d = e->step->derivatives;
+	if (d && d->varied)
+		emit_keeps(e, at, kept, false);
+	if (!d || !d->varied || d->regions)     /* steps of changing loads are of states as written */
 		return;
-	emit_keeps(e, at, kept, false);
 	say(e, "\n/* And back */\n"
-	       "static void $o_written_d(const double d[$N_STATES], double y[$N_STATES])\n"
+	       "static void $n_written_d(const double d[$N_STATES], double y[$N_STATES])\n"
 	       "{\n");
 	emit_all_gains(e, at, kept);
 	say(e, "}\n");

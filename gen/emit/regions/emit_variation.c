@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
 /* Derivatives beside a step of regions: the columns of what acts on the states, and those of outputs. */
 #include "inner.h"
-#include "emit/declarations.h"
 #include "emit/steps.h"
 #include "model/tunable/elsewhere.h"
 
@@ -151,13 +150,10 @@ static void emit_varied_step(const struct emitter *e)
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", start_of_search(e), layout->size);
 	declare_varied_params(e);
 	declare_region_vector(e);
-	if (e->step->shown->derivatives->regions && e->model->relative)
-		say(e, "    double y[$N_STATES];\n");
 	emit_loads_of_step(e);
 	emit_region_vector(e, true);
 	if (e->step->shown->derivatives->regions)
-		say(e, e->model->relative ? "    $n_get(s, y);\n"
-					    "    $o_keep(y, x);\n" : "    $n_get(s, x);\n");
+		say(e, "    $n_get(s, x);\n");
 	emit_acting_beside(e);
 	say(e, "    $o_vary(s, tau, x, contact, S, ds);\n");
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
@@ -191,8 +187,6 @@ void emit_all_varied(const struct emitter *e)
 {
 	if (e->step->derivatives->regions) {
 		const struct emitter changes = emitter_of_changes(e);
-		if (changes.model->relative)
-			emit_conversions(&changes);
 		emit_linear_tables(&changes);
 		emit_varied_step(&changes);
 	} else {
