@@ -3,10 +3,9 @@
 #define WITH_DERIVATIVES
 #include "crossings.c"
 
-#ifndef STATE_IS_COMPENSATED
 /* Pieces between crossings that are known need no look at what happens in them. */
-void pl_switching_follow_d(const pl_switching *m, int count, const pl_crossing *crossing, real *x, pl_contact *c,
-						   pl_variation *v)
+void pl_switching_follow(const pl_switching *m, int count, const pl_crossing *crossing, real *x, pl_contact *c,
+						 pl_variation *v)
 {
 	const real *const end = end_of_piece(m, v);
 	instant at;
@@ -33,4 +32,3 @@ void pl_switching_follow_d(const pl_switching *m, int count, const pl_crossing *
 	vary_piece(m, &at, m->h - done);
 	end_event(m, &at);
 }
-#endif

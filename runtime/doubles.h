@@ -126,6 +126,7 @@
 #undef pl_guards_compensated_advance_d
 #undef pl_guards_compensated_change_d
 #undef pl_switching_compensated_advance_d
+#undef pl_switching_compensated_follow_d
 #undef pl_variation
 #undef pl_variation_change
 #undef pl_variation_rate

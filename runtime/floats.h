@@ -126,6 +126,7 @@
 #define pl_guards_compensated_advance_d pl_guardsf_compensated_advance_d
 #define pl_guards_compensated_change_d pl_guardsf_compensated_change_d
 #define pl_switching_compensated_advance_d pl_switchingf_compensated_advance_d
+#define pl_switching_compensated_follow_d pl_switchingf_compensated_follow_d
 #define pl_variation pl_variationf
 #define pl_variation_change pl_variationf_change
 #define pl_variation_rate pl_variationf_rate

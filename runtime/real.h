@@ -63,12 +63,14 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #ifdef STATE_IS_COMPENSATED
 #define pl_switching_start pl_switching_compensated_start_d
 #define pl_switching_advance pl_switching_compensated_advance_d
+#define pl_switching_follow pl_switching_compensated_follow_d
 #define pl_guards_start pl_guards_compensated_start_d
 #define pl_guards_advance pl_guards_compensated_advance_d
 #define pl_guards_change pl_guards_compensated_change_d
 #else
 #define pl_switching_start pl_switching_start_d
 #define pl_switching_advance pl_switching_advance_d
+#define pl_switching_follow pl_switching_follow_d
 #define pl_guards_start pl_guards_start_d
 #define pl_guards_advance pl_guards_advance_d
 #define pl_guards_change pl_guards_change_d

@@ -125,6 +125,8 @@ void pl_guards_change_d(const pl_guards *m, PL_REAL time, PL_REAL *x, pl_contact
 void pl_switching_compensated_start_d(const pl_switching *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_switching_compensated_advance_d(const pl_switching *m, PL_REAL tau, PL_REAL *x, pl_contact *c,
 								pl_crossing *crossing, PL_REAL *work, pl_variation *v);
+void pl_switching_compensated_follow_d(const pl_switching *m, int count, const pl_crossing *crossing, PL_REAL *x,
+									   pl_contact *c, pl_variation *v);
 void pl_guards_compensated_start_d(const pl_guards *m, const PL_REAL *x, pl_contact *c, PL_REAL *work);
 void pl_guards_compensated_advance_d(const pl_guards *m, PL_REAL tau, PL_REAL *x, pl_contact *c, pl_crossing *crossing,
 									 PL_REAL *work, pl_variation *v);

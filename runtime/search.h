@@ -28,11 +28,10 @@
  *     PL_FEW                     crossings by few.h, which is included then; 0: none
  *     PL_COLUMNS_D               derivatives; 0: none.  PL_D: the type that has them, PL_MATRICES_D, PL_DEGREE_D: of
  *                                pl_variation, and PL(varied_first), PL(varied), PL_VARIED_STEP its tables;
- *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h},
- *                                which is in PL_WHOLE_STEP; PL_RELATIVE 1: PL(keep_d), PL(written_d) are there
- *     PL_SHARED                  1: the step calls PL(vary_free) where it has seen that it is event-free, where
- *                                PL(cross) has found all crossings PL(vary_through), else PL(vary_searched), which
- *                                moves s as well */
+ *                                PL_ACTING_D(p), PL_MOVING_D(p): whether in column p what acts varies, and e^{A h};
+ *                                PL_RELATIVE 1: PL(keep_d), PL(written_d) are there
+ *     PL_SHARED                  1: the step calls PL(vary_free) where it is surely event-free, PL(vary), by PL_FOLLOW,
+ *                                where PL(cross) has found all crossings, else PL(vary_searched), which moves s */
 #include "numbers.h"
 
 /* ---- what the search goes by ---- */
@@ -344,7 +343,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 		return;
 	}
 #endif
-#if PL_MEETS /* derivatives, which the search takes along, leave the state as it is without them */
+#if PL_MEETS
 	if (PL_WITHOUT_V && tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
 		return;
 	}
@@ -418,7 +417,7 @@ static PL_INLINE void PL(written_d)(const real *S, real *y)
 #endif
 
 /* The derivatives of the states over tau, from S, which has those of all else in x, and x where s is, which moves
- * along.  known: so many crossings are there, and all; -1: they are searched for */
+ * along.  known: so many crossings are there, and all; -1: they are searched for, as the state does */
 static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact *contact, pl_crossing *crossing,
 						   int known, real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
@@ -433,11 +432,6 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 	v.first = PL(varied_first);
 	v.entry = PL_OF(varied);
 	v.over = PL_VARIED_STEP;
-	v.segment = v.pending = v.sticks = v.upward = 0;
-	v.function = v.last = -1;
-	v.doubt.status = 0;
-	v.jumped = 0;
-	v.acted = 0;
 	v.S = S[0];
 	v.scale = scale;
 	v.when = when;
@@ -445,6 +439,9 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 	v.noise = noise;
 	v.work = work;
 	v.acting = acting;
+	v.segment = v.pending = v.sticks = v.upward = v.jumped = 0;
+	v.function = v.last = -1;
+	v.doubt.status = v.acted = 0;
 	for (i = 0; i < PL_SIZE; i++) {
 		scale[i] = i < PL_STATES ? ds->scale[PL_PLACE(i)] : 0;
 		S[PL_COLUMNS_D][i] = 0;
@@ -454,14 +451,14 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 	}
 #if PL_SHARED && PL_FEW > 0
 	if (known >= 0) {
-		pl_switching_follow_d(&PL(switching), known, crossing, x, contact, &v);
+		PL_FOLLOW(&PL(switching), known, crossing, x, contact, &v);
 	} else {
 		PL(search_step)(s, tau, x, contact, crossing, &v);
 	}
 #else
-	(void)known;
 	PL(search_step)(s, tau, x, contact, crossing, &v);
 #endif
+	(void)known;
 	for (i = 0; i < PL_STATES; i++) {
 		ds->scale[PL_PLACE(i)] = scale[i];
 	}
@@ -480,12 +477,18 @@ static void PL(vary_along)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_con
 	ds->status = ds->doubt.status;
 }
 
-/* s stays. */
-static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact,
+/* s stays, or has moved on, with so many crossings known. */
+static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact contact, int known,
 					 real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
 	pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
-	PL(vary_along)(s, tau, x, &contact, crossing, -1, S, ds);
+#if PL_SHARED && PL_FEW > 0
+	int i;
+	for (i = 0; i < known; i++) {
+		crossing[i] = s->crossing PL_PART[i];
+	}
+#endif
+	PL(vary_along)(s, tau, x, &contact, crossing, known, S, ds);
 }
 #endif
 
@@ -493,33 +496,19 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
 /* s over h too, by the same search, or by the shorter way that it has without derivatives */
 static void PL(vary_searched)(PL_TYPE *s, real x[PL_VECTOR], real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-#if PL_EVENT_FREE && PL_GUARDS && PL_MEETS
+#if PL_MEETS
 	real from[PL_VECTOR];
 	int i;
 	for (i = 0; i < PL_VECTOR; i++) {
 		from[i] = x[i];
 	}
-	PL(vary)(s, PL_H, from, s->contact PL_PART, S, ds);
+	PL(vary)(s, PL_H, from, s->contact PL_PART, -1, S, ds);
 	PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
 #else
 	PL(vary_along)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART, -1, S, ds);
 #endif
 	PL(arrive)(s, x);
 }
-
-#if PL_FEW > 0
-/* Over h from x in this region, where s has begun and met the crossings that it has */
-static void PL(vary_through)(const PL_TYPE *s, real x[PL_VECTOR], pl_contact from,
-							 real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
-{
-	pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
-	int i;
-	for (i = 0; i < s->contact PL_PART.crossings; i++) {
-		crossing[i] = s->crossing PL_PART[i];
-	}
-	PL(vary_along)(s, PL_H, x, &from, crossing, s->contact PL_PART.crossings, S, ds);
-}
-#endif
 
 #if PL_EVENT_FREE
 /* row . x, of so many entries */
@@ -538,24 +527,28 @@ static PL_INLINE real PL(part_of_row)(const real *row, const real *x, int entrie
 static PL_INLINE void PL(vary_free)(const PL_TYPE *s, const real x[PL_SIZE], real S[PL_COLUMNS_D + 1][PL_SIZE],
 									PL_D *ds)
 {
-	const real *Phi = PL_WHOLE_STEP[s->contact.matrix][0], *over = PL_VARIED_STEP;
+	const int which = s->contact PL_PART.matrix;
+	const real *Phi = PL_OF(pieces)[which][0], *over = PL_VARIED_STEP;
 	int i, p;
 	if (over == NULL) {
 		real from[PL_VECTOR];
-		for (i = 0; i < PL_SIZE; i++) {
-			from[i] = x[i];
+		for (i = 0; i < PL_VECTOR; i++) {
+			from[i] = i < PL_SIZE ? x[i] : 0;
 		}
-		PL(vary)(s, PL_H, from, s->contact, S, ds);
+		PL(vary)(s, PL_H, from, s->contact PL_PART, PL_FEW > 0 ? 0 : -1, S, ds);
 		return;
 	}
 	for (p = 0; p < PL_COLUMNS_D; p++) {
-		const real *const change = over + (p * PL_MATRICES_D + s->contact.matrix) * PL_SIZE * PL_SIZE;
+		const real *const change = over + (p * PL_MATRICES_D + which) * PL_SIZE * PL_SIZE;
 		real next[PL_STATES];
 		PL(keep_d)(ds->s[p], S[p]);
 		for (i = 0; i < PL_STATES; i++) {
 			const int row = i * PL_SIZE;
 			real sum = PL_ACTING_D(p) ? PL(part_of_row)(Phi + row, S[p], PL_SIZE)
 									  : PL(part_of_row)(Phi + row, S[p], PL_STATES);
+			if (PL_COMPENSATED) { /* of e^{A h} - I; second words are not small in columns of loads */
+				sum += S[p][i] + PL(part_of_row)(Phi + PL_SIZE * PL_SIZE + row, S[p], PL_SIZE);
+			}
 			if (PL_MOVING_D(p)) {
 				sum += PL(part_of_row)(change + row, x, PL_SIZE);
 			}

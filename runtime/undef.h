@@ -139,6 +139,7 @@
 #undef PL_FLAT
 #undef PL_FLOORS
 #undef PL_FOLDED
+#undef PL_FOLLOW
 #undef PL_FORCED
 #undef PL_FORCES
 #undef PL_FORMULAS
@@ -342,7 +343,6 @@
 #undef PL_VALUE
 #undef PL_VECTOR
 #undef PL_VARIED_STEP
-#undef PL_WHOLE_STEP
 #undef PL_WATCHED
 #undef PL_WATCH_READS
 #undef PL_WAY

@@ -583,6 +583,31 @@ printf '%s\n' 'model w' 'param k = 100, g = 0.01' 'coord x' 'init x = 0.005' \
 		bad += d*d > 1e-20*(1 + $i^2) } } END { exit NR < 200 || bad }' >>log
 result $? 'derivatives of steps in two words'
 
+# Independent parts, with a clearance, an impact, neither: as each alone, beside the states of steps without derivatives
+# part COORDINATE EQUATION: alone, in alone.csv
+part() {
+	printf '%s\n' 'model p' 'param k = 40, g = 0.01' "coord $1" "$2" "output $1" 'step 0.01' >part.spec
+	"$plrun" part.spec 3 --sensitivity k 2>>log | sed 1d | cut -d , -f 3 | paste -d , alone.csv - >more.csv
+	mv more.csv alone.csv
+}
+clears="x'' + x'/5 + k*x + 80*max(0, x - g) = 2*cos(3*t)"
+strikes="z'' + z'/10 + k*z/2 = 2*sin(5*t)
+when z >= 0.02: z' = -0.7*z'"
+swings="y'' + y'/9 + k*y = cos(4*t)"
+printf '%s\n' 'model p' 'param k = 40, g = 0.01' 'coord x, z, y' "$clears" "$strikes" "$swings" 'output x, z, y' \
+	'step 0.01' >p.spec
+: >log
+"$plrun" p.spec 3 2>>log >plain.csv
+"$plrun" p.spec 3 --sensitivity k 2>>log >all.csv
+sed 1d all.csv | cut -d , -f 5- >alone.csv
+part x "$clears"
+part z "$strikes"
+part y "$swings"
+cut -d , -f -4 all.csv | cmp - plain.csv >>log &&
+	awk -F, '{ for (i = 1; i <= 3; i++) { d = $i - $(i + 3); bad += NF != 6 || d*d > 1e-24*(1 + $i^2) } }
+		END { exit NR < 300 || bad }' alone.csv >>log
+result $? 'derivatives of independent parts'
+
 # A stop that is just reached, at ten gaps within rounding of that: each is reported
 grazes=0
 for off in 0 1e-16 -1e-16 2e-16 -2e-16 1e-14 -1e-14 1e-12 -1e-12 1e-11; do

@@ -391,9 +391,9 @@ void emit_event_check(const struct emitter *e)
 	const bool fast = e->step->regions.event_check.fast_path;
 	if (shares_step(e)) {
 		if (fast)
-			say(e, "        const pl_contact from = s->contact;\n"
+			say(e, "        const pl_contact from = s->contact$p;\n"
 			       "        if ($o_cross(s, now)) {\n"
-			       "        if (ds != NULL) { $n_vary_crossed(s, ds%s, now, from); }\n"
+			       "        if (ds != NULL) { $o_vary_crossed(s, ds%s, now, from); }\n"
 			       "        } else\n", sample_arguments(e));
 		emit_shared_search(e, "now", "seek");
 		say(e, "    }\n");

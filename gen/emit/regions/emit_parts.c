@@ -236,9 +236,32 @@ static void emit_questions(const struct emitter *e)
 
 /* ---- a step ---- */
 
+/* Derivatives, where they go on in the same step */
+static const char *beside_text(const struct emitter *part, bool as_parameters)
+{
+	const bool seeded = shares_step(part) && part->step->shown->derivatives->seeded;
+	if (!shares_step(part))
+		return "";
+	return as_parameters ? spell(part, seeded ? ", $n_d *ds, const double du[$N_INPUTS]" : ", $n_d *ds")
+			     : seeded ? ", ds, du" : ", ds";
+}
+
 static void begin_step(const struct emitter *part)
 {
-	open_function(part, NULL, "static void $o_step($n *s%s)", given_text(part, true));
+	open_function(part, NULL, "static %svoid $o_step($n *s%s%s)", shares_step(part) ? "PL_INLINE " : "",
+		      given_text(part, true), beside_text(part, true));
+	if (!shares_step(part) || !is_linear_part(part))
+		return;
+	say(part, "    if (ds != NULL) {\n");
+	declare_region_vector(part);
+	emit_region_vector(part, true);
+	say(part, "    $o_vary_met(s, ds%s, x);\n"
+		  "    }\n", sample_arguments(part));
+}
+
+static void end_step(const struct emitter *part)
+{
+	close_function(part, format("%s%s", given_text(part, false), beside_text(part, false)));
 }
 
 static int acting_entries(const struct emitter *part, const double *full)
@@ -321,7 +344,7 @@ static void emit_linear_step(const struct emitter *part)
 		add_summand(&size, format("pl_magnitude(s->y[%d])", place_of_state(part, i)));
 	say(part, "    if (!(%s < %s)) { s->status |= pl_not_finite(s->y, $N_STATES); }\n",
 	    sum_of(&size, 10), shortest(part->model->request.single ? 0x1p120 : 0x1p1000));
-	close_function(part, given_text(part, false));
+	end_step(part);
 }
 
 static void emit_switched_step(const struct emitter *part)
@@ -333,9 +356,9 @@ static void emit_switched_step(const struct emitter *part)
 	} else {
 		declare_region_vector(part);
 		emit_region_vector(part, true);
-		say(part, "    $o_seek(s, x);\n");
+		emit_seek(part);
 	}
-	close_function(part, "");
+	end_step(part);
 }
 
 static void emit_step_of_part(const struct emitter *part)
@@ -345,13 +368,15 @@ static void emit_step_of_part(const struct emitter *part)
 
 static void emit_step_call(const struct emitter *part)
 {
-	say(part, "    $o_step(s%s);\n", given_text(part, false));
+	say(part, "    $o_step(s%s%s);\n", given_text(part, false), beside_text(part, false));
 }
 
 void emit_parts_step(const struct emitter *e)
 {
+	if (shares_step(e))
+		for_parts(e, e->step->regions.parts, declare_shared_step);
 	for_parts(e, e->step->regions.parts, emit_step_of_part);
-	open_function(e, NULL, "%s", head_of_step(e));
+	shares_step(e) ? open_shared_step(e) : open_function(e, NULL, "%s", head_of_step(e));
 	emit_set_aside(e);
 	emit_rotated_loads(e, needed_loads(e, true), false);
 	for_parts(e, e->step->regions.parts, emit_step_call);
@@ -360,7 +385,7 @@ void emit_parts_step(const struct emitter *e)
 	emit_segment_end(e);
 	if (e->step->carried.count)           /* saved states are in no bound */
 		say(e, "    s->status |= pl_not_finite(s->y, $N_STATES);\n");
-	close_function(e, "");
+	shares_step(e) ? close_shared_step(e) : close_function(e, "");
 	emit_questions(e);
 }
 

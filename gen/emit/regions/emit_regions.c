@@ -341,6 +341,8 @@ void emit_search(const struct emitter *e, const char *ladder)
 	say_macro(e, "START", format("%s_start%s", search, varied));
 	say_macro(e, "ADVANCE", format("%s_advance%s", search, varied));
 	emit_variation_macros(e);
+	if (has_variation(e) && e->step->regions.event_check.fast_path)
+		say_macro(e, "FOLLOW", format("%s_follow_d", search));
 	if (regions_of(e)->cached)
 		emit_cached_macros(e);
 	if (!regions_change(e))
@@ -409,37 +411,19 @@ void emit_segment_end(const struct emitter *e)
 		say(e, "    $n_pass_segments(s);\n");
 }
 
-static void emit_searched_step(const struct emitter *e)
+void emit_seek(const struct emitter *e)
 {
-	declare_region_vector(e);
-	emit_set_aside(e);
-	emit_rotated_loads(e, needed_loads(e), false);
-	emit_region_vector(e, true);
-	if (shares_step(e) && e->step->regions.event_check.is_made) {
+	if (!shares_step(e)) {
+		say(e, "    $o_seek(s, x);\n");
+	} else if (has_guards(e) && e->step->regions.event_check.is_made) {
 		say(e, "    if ($o_unmet_here(s, x)) {\n");
 		emit_shared_call(e, "vary_clear", "x");
 		say(e, "    } else {\n");
 		emit_shared_search(e, "x", "seek_again");
 		say(e, "    }\n");
-	} else if (shares_step(e)) {
-		emit_shared_search(e, "x", "seek");
 	} else {
-		say(e, "    $o_seek(s, x);\n");
+		emit_shared_search(e, "x", "seek");
 	}
-	emit_take_back(e);
-	emit_step_end(e);
-	emit_segment_end(e);
-}
-
-static void emit_full_step(const struct emitter *e)
-{
-	emit_set_aside(e);
-	emit_raw_locals(e, NULL);
-	emit_rotated_loads(e, needed_loads(e), false);
-	emit_event_check(e);
-	emit_take_back(e);
-	emit_step_end(e);
-	emit_segment_end(e);
 }
 
 /* ---- the same over lanes of a batch ---- */
@@ -568,16 +552,28 @@ void declare_region_search(const struct emitter *e)
 
 void emit_region_step(const struct emitter *e)
 {
+	const bool checked = e->step->regions.event_check.is_made && !has_guards(e);
 	if (shares_step(e)) {
 		declare_shared_step(e);
 		open_shared_step(e);
 	} else {
 		open_function(e, NULL, "%s", head_of_step(e));
 	}
-	if (e->step->regions.event_check.is_made && !has_guards(e))
-		emit_full_step(e);
-	else
-		emit_searched_step(e);
+	if (!checked)
+		declare_region_vector(e);
+	emit_set_aside(e);
+	if (checked)
+		emit_raw_locals(e, NULL);
+	emit_rotated_loads(e, needed_loads(e), false);
+	if (checked) {
+		emit_event_check(e);
+	} else {
+		emit_region_vector(e, true);
+		emit_seek(e);
+	}
+	emit_take_back(e);
+	emit_step_end(e);
+	emit_segment_end(e);
 	if (e->step->carried.count)           /* saved states are in no bound */
 		emit_region_status(e);
 	shares_step(e) ? close_shared_step(e) : close_function(e, "");

@@ -103,7 +103,7 @@ static void emit_from_start(const struct emitter *e, bool doubts, const char *ca
 	       "    double S[$N_D + 1][%d] = {{0.0}};\n", e->step->layout.size);
 	declare_varied_params(e);
 	emit_acting_beside(e);
-	say(e, "    $o_%s;\n", call);
+	say(e, "    $o_%s;\n", spell(e, call));
 	if (doubts)
 		close_doubts(e);
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
@@ -113,17 +113,20 @@ static void emit_shared_steps(const struct emitter *e)
 {
 	const char *seeds = sample_parameters(e);
 	const int size = size_of_vector(e);
+	const bool linear = functions_of(e) == 0;
 	if (e->step->regions.event_check.is_made) {
-		open_function(e, NULL, "static PL_INLINE void $n_vary_clear(const $n *s, $n_d *ds%s, "
+		open_function(e, NULL, "static PL_INLINE void $o_vary_clear(const $n *s, $n_d *ds%s, "
 			      "const double x[%d])", seeds, size);
 		emit_from_start(e, false, "vary_free(s, x, S, ds)");
 	}
-	open_function(e, NULL, "static void $n_vary_met($n *s, $n_d *ds%s, double x[%d])", seeds, size);
-	emit_from_start(e, true, "vary_searched(s, x, S, ds)");
+	open_function(e, NULL, "static void $o_vary_met($n *s, $n_d *ds%s, double x[%d])", seeds, size);
+	if (linear)
+		say(e, "    const pl_contact from = %s;\n", start_of_search(e));
+	emit_from_start(e, true, linear ? "vary(s, $N_H, x, from, -1, S, ds)" : "vary_searched(s, x, S, ds)");
 	if (e->step->regions.event_check.fast_path) {
-		open_function(e, NULL, "static void $n_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], "
+		open_function(e, NULL, "static void $o_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], "
 			      "pl_contact from)", seeds, size);
-		emit_from_start(e, true, "vary_through(s, x, from, S, ds)");
+		emit_from_start(e, true, "vary(s, $N_H, x, from, s->contact$p.crossings, S, ds)");
 	}
 }
 
@@ -155,7 +158,7 @@ static void emit_varied_step(const struct emitter *e)
 	if (e->step->shown->derivatives->regions)
 		say(e, "    $n_get(s, x);\n");
 	emit_acting_beside(e);
-	say(e, "    $o_vary(s, tau, x, contact, S, ds);\n");
+	say(e, "    $o_vary(s, tau, x, contact, -1, S, ds);\n");
 	close_function(e, given_inputs(e) ? e->step->shown->derivatives->seeded ? "t u du" : "t u" : "t");
 }
 
@@ -193,7 +196,7 @@ void emit_all_varied(const struct emitter *e)
 		each_part(e, emit_varied_step);
 	}
 	if (shares_step(e))
-		emit_shared_steps(e);
+		each_part(e, emit_shared_steps);
 	open_function(e, NULL, "static void $n_vary_all(const $n *s, $n_d *ds%s, double tau)", sample_parameters(e));
 	open_doubts(e);
 	if (e->step->derivatives->regions)

@@ -67,6 +67,7 @@ void declare_shared_step(const struct emitter *e);
 void open_shared_step(const struct emitter *e);
 void emit_shared_call(const struct emitter *e, const char *function, const char *last);
 void emit_shared_search(const struct emitter *e, const char *x, const char *own); /* of both, or by $o_OWN of s alone */
+void emit_seek(const struct emitter *e);                          /* from x; states are not there before */
 void close_shared_step(const struct emitter *e);
 
 /* ---- emit_parts.c: the parts, each as it would be alone ---- */

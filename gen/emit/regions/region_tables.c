@@ -439,16 +439,6 @@ bool acts_beside(const struct emitter *e, int column)
 	return any;
 }
 
-static void emit_whole_steps(const struct emitter *e)
-{
-	const int branches = e->step->branches, size = e->step->layout.size;
-	double **whole = ARRAY(double *, (size_t)branches);
-	for (int k = 0; k < branches; k++)
-		whole[k] = full_step_of(e->step, k);
-	put_matrices(e, "whole_step", "e^{A h} of each linear system, where pieces are shorter", branches, size, size,
-		     whole, layout_names(&e->step->layout, e->system, e->model));
-}
-
 /* Bit p of a macro: whether in column p e^{A h} varies, or loads and inputs do */
 static void emit_columns_that(const struct emitter *e, const char *macro, const double *over, bool move)
 {
@@ -478,9 +468,6 @@ void emit_variation(const struct emitter *e, const struct guards *g)
 		if (v.over)
 			emit_varied_steps(e, v.over);
 	}
-	if (any_pieces(e) && shares_step(e) && e->step->regions.event_check.is_made)
-		emit_whole_steps(e);
-	say_macro(e, "WHOLE_STEP", any_pieces(e) ? "PL(whole_step)" : "PL_OF(pieces)");
 	say_macro(e, "VARIED_STEP", v.over ? "PL_OF(varied_step)[0]" : "NULL");
 	emit_columns_that(e, "ACTING_D(p)", v.over, false);
 	emit_columns_that(e, "MOVING_D(p)", v.over, true);
@@ -504,16 +491,14 @@ void emit_variation_macros(const struct emitter *e)
 	say_macro(e, "D", spell(e, "$n_d"));
 	say_macro(e, "MATRICES_D", integer_text(e->step->branches));
 	say_macro(e, "DEGREE_D", integer_text(e->step->series.degree + 3));
-	say_macro(e, "SHARED", integer_text(shares_step(e)));
+	say_macro(e, "SHARED", integer_text(shares_step(e) && functions_of(e) > 0));
 	say_macro(e, "RELATIVE", integer_text(e->model->relative != NULL));
 }
 
 bool shares_step(const struct emitter *e)
 {
-	return has_variation(e) && !e->step->shown->derivatives->regions && !e->part && !e->step->regions.parts &&
-	       !has_peaks(e) && !e->step->carried.count &&
-	       !(e->step->regions.event_check.is_made &&
-		 (is_compensated(e) || (any_pieces(e) && e->model->params.retuned)));
+	const struct step *all = e->step->shown;
+	return has_variation(e) && !all->derivatives->regions && !has_peaks(e) && !all->carried.count;
 }
 
 const char *no_variation(const struct emitter *e)
@@ -543,11 +528,11 @@ void declare_shared_step(const struct emitter *e)
 {
 	const int size = size_of_vector(e);
 	if (e->step->regions.event_check.is_made)
-		say(e, "static void $n_vary_clear(const $n *s, $n_d *ds%s, const double x[%d]);\n",
+		say(e, "static void $o_vary_clear(const $n *s, $n_d *ds%s, const double x[%d]);\n",
 		    sample_parameters(e), size);
-	say(e, "static void $n_vary_met($n *s, $n_d *ds%s, double x[%d]);\n", sample_parameters(e), size);
+	say(e, "static void $o_vary_met($n *s, $n_d *ds%s, double x[%d]);\n", sample_parameters(e), size);
 	if (e->step->regions.event_check.fast_path)
-		say(e, "static void $n_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], pl_contact from);\n",
+		say(e, "static void $o_vary_crossed(const $n *s, $n_d *ds%s, double x[%d], pl_contact from);\n",
 		    sample_parameters(e), size);
 }
 
@@ -559,7 +544,7 @@ void open_shared_step(const struct emitter *e)
 
 void emit_shared_call(const struct emitter *e, const char *function, const char *last)
 {
-	say(e, "        if (ds != NULL) { $n_%s(s, ds%s, %s); }\n", function, sample_arguments(e), last);
+	say(e, "        if (ds != NULL) { $o_%s(s, ds%s, %s); }\n", function, sample_arguments(e), last);
 }
 
 void emit_shared_search(const struct emitter *e, const char *x, const char *own)
