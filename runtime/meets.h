@@ -149,8 +149,8 @@ static PL_APART int PL(powers)(const pl_guards *m, int which, double L, const do
 		for (i = 0; i < PL_PAIRED; i++) {
 			double sum = -0.0;
 			PL_ENTRIES
-			for (j = 0; j < PL_SIZE && i < PL_SIZE; j++) {
-				if (PL_ACTS(i, j)) {
+			for (j = 0; j < PL_SIZE; j++) {
+				if (i < PL_SIZE && PL_ACTS(i, j)) {
 					sum += A[i * PL_SIZE + j] * power[j];
 				}
 			}
