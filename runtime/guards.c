@@ -363,8 +363,32 @@ void pl_guards_advance(const pl_guards *m, real tau, real *x, pl_contact *c, pl_
 }
 
 #ifndef STATE_IS_COMPENSATED
-#ifndef WITH_DERIVATIVES
 #ifndef REAL_IS_FLOAT
+
+int pl_guards_meet(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
+				   double *work AND_VARIATION)
+{
+	instant at = instant_of(m, x, c, crossing, work);
+	event met = no_event;
+	SET_VARIATION(at);
+	met.guard = guard;
+	c->crossings = 0;
+	keep(m, &at);
+	return pass(m, &at, &met, time) == GO_ON;
+}
+
+#ifdef WITH_DERIVATIVES
+
+void pl_guards_vary_d(const pl_guards *m, double length, double *x, double *end, pl_contact *c, pl_variation *v)
+{
+	instant at = instant_of(m, x, c, (pl_crossing *)0, v->work);
+	at.v = v;
+	vary_piece(m, &at, length);
+	at.x = end;
+	vary_held(m, &at);
+}
+
+#else
 
 /* row . x as dot, but for what is 0 in the row: where products are calls, a look at the row costs less. */
 static PL_APART double sum_of(int n, const double *row, const double *x)
@@ -397,18 +421,8 @@ enum { MET_SIZE = 8, MET_TERMS = 17 };
 #define PL_MOST_TERMS MET_TERMS
 #define PL_DOT(row, x) sum_of(m->size, row, x)
 #define PL_ACTS(i, j) 1
+#define PL_AND_VARIATION
 #include "unmet.h"
-
-int pl_guards_meet(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
-				   double *work)
-{
-	instant at = instant_of(m, x, c, crossing, work);
-	event met = no_event;
-	met.guard = guard;
-	c->crossings = 0;
-	keep(m, &at);
-	return pass(m, &at, &met, time) == GO_ON;
-}
 
 void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl_crossing *crossing, double *work)
 {

@@ -538,7 +538,8 @@ static int PL(goes_through)(const pl_guards *m, int k, double when, double *x, p
 
 /* x over h with one event, or with none that the chord of a guard has hidden; 0: there may be more, and nothing has
  * changed */
-static int PL(meets_one)(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing, double *work)
+static int PL(meets_one)(const pl_guards *m, double *x, pl_contact *c, pl_crossing *crossing,
+						 double *work PL_AND_VARIATION)
 {
 	const pl_contact before = *c;
 	double end[PL_MOST_SIZE], size[PL_MOST_SIZE], y[PL_MOST_SIZE], again[PL_MOST_SIZE], all = 0.0, when = 1.0;
@@ -565,12 +566,12 @@ static int PL(meets_one)(const pl_guards *m, double *x, pl_contact *c, pl_crossi
 	}
 	behind = met == -1 ? c->region : PL(goes_alone)(m, c->region, met, 1.0 - when, again);
 	if (behind < 0) {
-		if (!PL(goes_through)(m, met, when, y, c, crossing, work)) {
-			*c = before;
-			return 0;
-		}
 		for (i = 0; i < PL_SIZE; i++) {
 			again[i] = y[i];
+		}
+		if (!PL(goes_through)(m, met, when, again, c, crossing, work)) {
+			*c = before;
+			return 0;
 		}
 	} else {
 		c->crossings = 0;
@@ -585,6 +586,11 @@ static int PL(meets_one)(const pl_guards *m, double *x, pl_contact *c, pl_crossi
 			c->matrix = m->matrix[behind];
 		}
 	}
+#if PL_COLUMNS_D > 0
+	if (v != NULL) {
+		PL(take_along)(m, met, when, x, y, again, &before, c->region, work, v);
+	}
+#endif
 	for (i = 0; i < PL_SIZE; i++) {
 		x[i] = again[i];
 	}

@@ -490,6 +490,11 @@ void pl_guards_step(const pl_guards *m, double tau, double *x, pl_contact *c, pl
  * more of it than this. work: that of pl_guards_advance. */
 int pl_guards_meet(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
                    double *work);
+int pl_guards_meet_d(const pl_guards *m, int guard, double time, double *x, pl_contact *c, pl_crossing *crossing,
+                     double *work, pl_variation *v);
+
+/* Derivatives over a part of a step from x to `end`, in which nothing happens */
+void pl_guards_vary_d(const pl_guards *m, double length, double *x, double *end, pl_contact *c, pl_variation *v);
 
 /* Sets no lead: w has been the same since t = 0. */
 static inline void pl_lead_start(pl_lead *lead)

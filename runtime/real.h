@@ -74,6 +74,7 @@ enum { REAL_DIGITS = DBL_MANT_DIG, REAL_EXPONENTS = DBL_MAX_EXP };
 #define pl_guards_start pl_guards_start_d
 #define pl_guards_advance pl_guards_advance_d
 #define pl_guards_change pl_guards_change_d
+#define pl_guards_meet pl_guards_meet_d
 #endif
 #endif
 

@@ -162,12 +162,10 @@ static const PL_SEARCH PL(switching) = {PL_TABLES};
 #if PL_COLUMNS_D > 0
 #define PL_AND_VARIATION , pl_variation *v
 #define PL_V , v
-#define PL_WITHOUT_V (v == NULL)
 #define PL_NO_V , (pl_variation *)0
 #else
 #define PL_AND_VARIATION
 #define PL_V
-#define PL_WITHOUT_V 1
 #define PL_NO_V
 #endif
 
@@ -344,7 +342,7 @@ static void PL(search_step)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_co
 	}
 #endif
 #if PL_MEETS
-	if (PL_WITHOUT_V && tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work)) {
+	if (tau >= PL_H && PL(meets_one)(&PL(switching), x, contact, crossing, work PL_V)) {
 		return;
 	}
 #endif
@@ -493,20 +491,10 @@ static void PL(vary)(const PL_TYPE *s, real tau, real x[PL_VECTOR], pl_contact c
 #endif
 
 #if PL_SHARED
-/* s over h too, by the same search, or by the shorter way that it has without derivatives */
+/* s over h too, by the same search */
 static void PL(vary_searched)(PL_TYPE *s, real x[PL_VECTOR], real S[PL_COLUMNS_D + 1][PL_SIZE], PL_D *ds)
 {
-#if PL_MEETS
-	real from[PL_VECTOR];
-	int i;
-	for (i = 0; i < PL_VECTOR; i++) {
-		from[i] = x[i];
-	}
-	PL(vary)(s, PL_H, from, s->contact PL_PART, -1, S, ds);
-	PL(search_step)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART PL_NO_V);
-#else
 	PL(vary_along)(s, PL_H, x, &s->contact PL_PART, s->crossing PL_PART, -1, S, ds);
-#endif
 	PL(arrive)(s, x);
 }
 

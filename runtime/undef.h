@@ -156,7 +156,6 @@
 #undef PL_DEGREE_D
 #undef PL_MATRICES_D
 #undef PL_NO_V
-#undef PL_WITHOUT_V
 #undef PL_V
 #undef PL_GIVEN
 #undef PL_TAKEN

@@ -124,6 +124,33 @@ static PL_INLINE PL_TRUTH PL_UNMET(keeps_all)(const pl_guards *m, int region, co
 }
 
 #if PL_MEETS
+#if PL_COLUMNS_D > 0
+/* Columns from x to end, h on: y is where guard k is met, if one is, and `behind` the region after it.  Where the
+ * search would decide otherwise, it takes them. */
+static void PL(take_along)(const pl_guards *m, int k, double when, double *x, double *y, double *end,
+						   const pl_contact *before, int behind, double *work, pl_variation *v)
+{
+	const pl_variation begun = *v;
+	pl_crossing crossing[PL_ROOM(PL_MAX_EVENTS)];
+	pl_contact c = *before;
+	double from[(PL_COLUMNS_D + 1) * PL_SIZE];
+	int i;
+	for (i = 0; i < (PL_COLUMNS_D + 1) * PL_SIZE; i++) {
+		from[i] = v->S[i];
+	}
+	pl_guards_vary_d(m, when * m->h, x, k < 0 ? end : y, &c, v);
+	if (k >= 0 && pl_guards_meet_d(m, k, when * m->h, y, &c, crossing, work, v) && c.region == behind) {
+		pl_guards_vary_d(m, (1.0 - when) * m->h, y, end, &c, v);
+	} else if (k >= 0) {
+		*v = begun;
+		for (i = 0; i < (PL_COLUMNS_D + 1) * PL_SIZE; i++) {
+			v->S[i] = from[i];
+		}
+		c = *before;
+		pl_guards_advance_d(m, m->h, x, &c, crossing, work, v);
+	}
+}
+#endif
 #include "meets.h"
 #endif
 
