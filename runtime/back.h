@@ -7,7 +7,7 @@
  *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state, and PL(move_d) a step of
  *                                derivatives alone
  *     PL_BY_ROWS                 1: that of outputs is the same all along.  PL_DECLARED  0: outputs are the states
- *     PL_STRIDE                  so many steps are taken backwards at once, where a series serves several
+ *     PL_STRIDE                  1, or at least so many steps are taken backwards at once, from where a series begins
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
  *
  * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
@@ -361,6 +361,23 @@ static void PL(worth_of)(const PL_TYPE *s, PL(back_work) *b, PL(d) *ds, size_t n
 	}
 }
 
+/* Steps on to where the first series ends from the row `far` on, or the last one up to `most`: so many steps */
+static size_t PL(go_far)(PL_TYPE *s, size_t *row, size_t far, size_t most)
+{
+	const size_t begun = *row;
+	PL_TYPE next = *s;
+	size_t at = begun;
+	while (*row < far && at < most) {
+		PL(step)(&next);
+		at++;
+		if (next.served == next.valid) {
+			*s = next;
+			*row = at;
+		}
+	}
+	return at - begun;
+}
+
 /* n steps backwards at once */
 static void PL(stride_back)(const PL_TYPE *s, PL(back_work) *b, size_t n, const real *w, real lam[PL_STATES],
 							real pb[PL_DERIVATIVES])
@@ -430,7 +447,7 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 #endif
 					, PL_TYPE *snapshot, size_t snapshots)
 {
-	size_t at[PL_SNAPSHOTS], top = 0, steps = 0, k, m, row; /* k, m, row, at: strides */
+	size_t at[PL_SNAPSHOTS], top = 0, steps = 0, k, row;
 	PL(back_work) b;
 	int i, p;
 #if PL_SLOPED
@@ -445,25 +462,26 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 	PL(begin_back)(&b);
 	at[0] = 0;
 	snapshot[0] = *s;
-	for (k = (n + PL_STRIDE - 1) / PL_STRIDE; k > 0; k--) {
+	for (k = n; k > 0; k = row) {
 		struct PL_TYPE now = snapshot[top];
-#if PL_STRIDE > 1
-		size_t step;
-#endif
 		row = at[top];
-		while (row + 1 < k) {
-			m = PL(apart)(k - row, snapshots - top);
-			for (; m > 0; m--, row++, steps += PL_STRIDE) {
-#if PL_INPUTS > 0
-				PL(step)(&now, u + row * PL_INPUTS);
-#elif PL_STRIDE > 1
-				for (step = 0; step < PL_STRIDE; step++) {
-					PL(step)(&now);
-				}
-#else
-				PL(step)(&now);
-#endif
+		while (row + PL_STRIDE < k) {
+			const size_t left = (k - row + PL_STRIDE - 1) / PL_STRIDE;
+			const size_t far = row + PL_STRIDE * PL(apart)(left, snapshots - top);
+#if PL_STRIDE > 1
+			steps += PL(go_far)(&now, &row, far, k - PL_STRIDE);
+			if (row < far) {
+				break;
 			}
+#else
+			for (; row < far; row++, steps++) {
+				PL(step)(&now
+#if PL_INPUTS > 0
+						 , u + row * PL_INPUTS
+#endif
+						 );
+			}
+#endif
 			if (top + 1 < snapshots) {
 				top++;
 				snapshot[top] = now;
@@ -471,9 +489,7 @@ size_t PL(gradient)(const PL_TYPE *s, PL(d) *ds, size_t n
 			}
 		}
 #if PL_STRIDE > 1
-		step = row * PL_STRIDE;
-		PL(stride_back)(&now, &b, n - step < PL_STRIDE ? n - step : PL_STRIDE,
-						w == NULL ? NULL : w + step * PL_OUTPUTS, lam, pb);
+		PL(stride_back)(&now, &b, k - row, w == NULL ? NULL : w + row * PL_OUTPUTS, lam, pb);
 #else
 		PL(row_back)(&now, &b
 #if PL_INPUTS > 0

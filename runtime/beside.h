@@ -15,7 +15,10 @@
  *     PL_TUNED                   1: of a linear model, whose step may be tunable too
  *
  *     PL(moved_column)[PL_STATES]    of each state the column that it is of, -1: it is a state of the model;
- *     PL(moved_state)[PL_STATES]     and of which state; -1: of none, and 0; -2: it is t
+ *     PL(moved_state)[PL_STATES]     and of which state; -1: of none, and 0; -2: it is t;
+ *                                -3 - i: i, of a derivative by nothing
+ *     PL_PROBED                  1: series as long as a tolerance allows end where the model's do, or where the
+ *                                derivative of which PL_COUNTS is 2 lets them, whatever the others are
  *     PL_MOVED                   columns that go through events: member contact.doubt
  *     PL(moved_input)[PL_INPUTS]     of each input the model's; behind the first PL_OWN_INPUTS stand seeds */
 #include "numbers.h"
@@ -36,7 +39,7 @@ static void PL(both_states)(const PL_OF_TYPE *s, const PL_OF(d) *ds, real z[PL_S
 	PL_OF(get)(s, y);
 	for (i = 0; i < PL_STATES; i++) {
 		const int p = PL(moved_column)[i], of = PL(moved_state)[i];
-		z[i] = of < -1 ? PL(clock)(s) : of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
+		z[i] = of == -2 ? PL(clock)(s) : of < 0 ? 0 : p < 0 ? y[of] : ds->s[p][of];
 	}
 }
 
@@ -103,20 +106,57 @@ static int PL(follow_params)(PL_TYPE *b, const PL_OF_TYPE *s)
 }
 #endif
 
+#if PL_PROBED
+/* A series begins where the model's does, with what that knows: so derivatives are those of its numbers, and backwards
+ * they are the same. */
+static void PL(begin_series)(PL_TYPE *b, const PL_OF_TYPE *s, const real z[PL_STATES])
+{
+	int i;
+	b->served = b->valid = s->valid;
+	b->most = s->most;
+	for (i = 0; i < PL_STATES; i++) {
+		const int of = PL(moved_state)[i];
+		b->y[i] = z[i];
+		if (PL_COUNTS(i) == 1) {
+			b->low[i] = s->low[of];
+			b->scale[i] = s->scale[of];
+			b->unit[i] = s->unit[of];
+		}
+	}
+}
+
+/* The one by nothing has something of every pattern of motion, each state as large as the model's. */
+static void PL(probe)(PL_TYPE *b, const PL_OF_TYPE *s)
+{
+	int i;
+	for (i = 0; i < PL_STATES; i++) {
+		if (PL_COUNTS(i) == 2) {
+			const int of = -3 - PL(moved_state)[i];
+			const real turn = (real)0.6180339887 * (real)of, part = 1 - (turn - (real)(int)turn) / 2;
+			b->scale[i] = part * (s->unit[of] > 0 ? 1 / s->unit[of] : 1);
+			b->unit[i] = 1 / b->scale[i];
+			b->y[i] = of % 2 ? -b->scale[i] : b->scale[i];
+			b->low[i] = 0;
+		}
+	}
+}
+#endif
+
 /* The states are the model's where a series begins, so that the derivatives are of what it computes; what was set
  * meanwhile begins anew. */
 static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 {
 	real z[PL_STATES];
-	int i;
+	int i, left;
 #if PL_PARAMS > 0
 	(void)PL(follow_params)(b, s);
 #endif
 	PL(both_states)(s, ds, z);
 	PL(take_samples)(b, s, ds);
-	if (!PL(is_left)(b, s, ds, z)) {
+	left = PL(is_left)(b, s, ds, z);
+	if (!left) {
 		PL(set)(b, PL_OF(time)(s), z);
-#if PL_CONSTRAINTS
+#if PL_CONSTRAINTS && !PL_PROBED
 		/* Seeds, which have no time (back.h), need not fulfil the derivatives of the constraints: what they
 		 * miss would
 		 * go other ways by other steps, and the derivatives of a step were not linear in them. */
@@ -135,11 +175,18 @@ static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 		PL(place)(b);
 #endif
 #endif
-		return;
 	}
-	for (i = 0; i < PL_STATES && PL_ENDED(b); i++) {
+	for (i = 0; i < PL_STATES && left && PL_ENDED(b); i++) {
 		b->y[i] = PL(moved_column)[i] < 0 ? z[i] : b->y[i];
 	}
+#if PL_PROBED
+	if (!left || PL_ENDED(s)) {
+		PL(begin_series)(b, s, z);
+	}
+	if (PL_ENDED(b)) {
+		PL(probe)(b, s);
+	}
+#endif
 }
 
 #if PL_INPUTS > 0

@@ -5,6 +5,7 @@
  *     PL(name), PL_TYPE, PL_STATES     the model's prefix before a name; its type, with members scale and unit
  *     PL_NOW                     the member whose sizes are taken
  *     PL_KINDS, PL_KIND(i)       whether states of one kind are measured together; of which one state i is, 0 .. 2
+ *     PL_COUNTS(i)                1, where state i counts; in models of derivatives 2 where its size is known; else 0
  *     PL_FLOORS                  whether PL(floor)[] is there: what counts beside the size that a state has now */
 #include "numbers.h"
 
@@ -47,13 +48,13 @@ static void PL(measure)(PL_TYPE *s)
 	real most[3] = {0, 0, 0};
 	int i, grown = 0;
 	for (i = 0; i < PL_STATES; i++) {
-		grown = PL(take_size)(s, i) || grown;
+		grown = (PL_COUNTS(i) == 1 && PL(take_size)(s, i)) || grown;
 	}
 	if (!grown) {
 		return;
 	}
 	for (i = 0; i < PL_STATES; i++) {
-		if (s->scale[i] > most[PL_KIND(i)]) {
+		if (PL_COUNTS(i) == 1 && s->scale[i] > most[PL_KIND(i)]) {
 			most[PL_KIND(i)] = s->scale[i];
 		}
 	}
@@ -63,7 +64,7 @@ static void PL(measure)(PL_TYPE *s)
 		least = PL(floor)[i] > 0 ? 0 : least;
 #endif
 		size = s->scale[i] > least ? s->scale[i] : least;
-		s->unit[i] = PL(one_over)(size, 0);
+		s->unit[i] = PL_COUNTS(i) == 1 ? PL(one_over)(size, 0) : s->unit[i];
 	}
 }
 #else
@@ -72,7 +73,7 @@ static void PL(measure)(PL_TYPE *s)
 {
 	int i;
 	for (i = 0; i < PL_STATES; i++) {
-		if (PL(take_size)(s, i)) {
+		if (PL_COUNTS(i) == 1 && PL(take_size)(s, i)) {
 			s->unit[i] = 1 / s->scale[i];
 		}
 	}

@@ -56,6 +56,9 @@
 #ifndef PL_HELD
 #define PL_HELD 0
 #endif
+#ifndef PL_COUNTS
+#define PL_COUNTS(i) 1
+#endif
 #ifndef PL_MOVED
 #define PL_MOVED 0
 #endif

@@ -34,7 +34,7 @@ static PL_APART real PL(least_size)(const real y[], int i)
 	int k;
 	(void)i; /* there may be one kind alone */
 	for (k = 0; k < PL_STATES; k++) {
-		const real size = PL_KIND(k) == PL_KIND(i) ? pl_magnitude(y[k]) : 0;
+		const real size = PL_KIND(k) == PL_KIND(i) && PL_COUNTS(k) == 1 ? pl_magnitude(y[k]) : 0;
 		most = size > most ? size : most;
 	}
 	return most / 1048576;
@@ -93,7 +93,7 @@ static void PL(remainders)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUM
 		last[i] = before[i] = 0;
 	}
 	for (i = 0; i < PL_STATES + PL_MEASURED; i++) {
-		const real unit = PL(unit_at)(s, c, i);
+		const real unit = PL_COUNTS(i) ? PL(unit_at)(s, c, i) : 0;
 		last[0] = PL(larger)(last[0], pl_magnitude(c[PL_ORDER][i]) * unit);
 #if PL_ORDER > 2
 		before[0] = PL(larger)(before[0], pl_magnitude(c[PL_ORDER - 1][i]) * unit);
@@ -187,8 +187,8 @@ static int PL(meets)(const PL_TYPE *s, const real start[], const real slope[], r
 			/* What constraints bear is 0 by differences of what others of its kind get. */
 			rounded += PL_SLOPE_ROUNDED * 16384 * PL(least_size)(left, i);
 #endif
-			if (!(pl_magnitude(left[i] - along) * theta <= 2 * PL_ORDER * PL_TOLERANCE * large
-					+ rounded * theta)) {
+			if (PL_COUNTS(i) && !(pl_magnitude(left[i] - along) * theta
+					<= 2 * PL_ORDER * PL_TOLERANCE * large + rounded * theta)) {
 				return 0;
 			}
 		}

@@ -57,7 +57,7 @@ static int PL(reach)(const PL_TYPE *s)
 	real last = 0, before = 0;
 	int i, m = s->valid;
 	for (i = 0; i < PL_STATES + PL_MEASURED; i++) {
-		const real unit = PL(unit_so_far)(s, i);
+		const real unit = PL_COUNTS(i) ? PL(unit_so_far)(s, i) : 0;
 		const real p = pl_magnitude(s->series[PL_ORDER][i]) * unit;
 		const real q = pl_magnitude(s->series[PL_ORDER - 1][i]) * unit;
 		last = p > last ? p : last;
@@ -88,7 +88,7 @@ static int PL(agrees)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS],
 	real most = 0;
 	int i;
 	for (i = 0; i < PL_STATES; i++) {
-		most = pl_magnitude(d[0][i]) > most ? pl_magnitude(d[0][i]) : most;
+		most = PL_COUNTS(i) && pl_magnitude(d[0][i]) > most ? pl_magnitude(d[0][i]) : most;
 	}
 	for (i = 0; i < PL_STATES; i++) {
 		const real along = PL(slope_along)(c, i, size);
@@ -102,7 +102,7 @@ static int PL(agrees)(const PL_TYPE *s, const real c[PL_ORDER + 1][PL_COLUMNS],
 			large = PL(least_size)(d[0], i);
 		}
 #endif
-		if (!(pl_magnitude(along - d[1][i]) * size <= PL_ORDER * PL_TOLERANCE * large
+		if (PL_COUNTS(i) && !(pl_magnitude(along - d[1][i]) * size <= PL_ORDER * PL_TOLERANCE * large
 				+ PL_STATE_ROUNDED * most)) {
 			return 0;
 		}

@@ -24,6 +24,8 @@
 #undef PL_TUNED
 #undef PL_BOTH
 #undef PL_MOVED
+#undef PL_PROBED
+#undef PL_COUNTS
 #undef PL_OWN_OUTPUTS
 #undef PL_OWN_INPUTS
 #undef PL_OWN_STATES

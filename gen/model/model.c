@@ -521,7 +521,8 @@ static void take_derivatives(void *context)
 	if (request->sensitivity && !parse_sensitivities(b->spec, source_argument(request->sensitivity)))
 		abandon();
 	const struct again *again = &request->again;
-	add_derivatives(b->spec, again->derivatives_from, again->derivatives, again->jumps, again->remainder);
+	add_derivatives(b->spec, again->derivatives_from, again->derivatives, again->jumps, again->remainder,
+			again->probe);
 }
 
 /* Params that are varied; of tunable ones behind derivatives, which go through what is made of them. */

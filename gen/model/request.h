@@ -23,6 +23,8 @@ struct again {                      /* to build a model a second time, for build
 	/* so many of the spec's derivatives, from the first on, as coordinates behind its own; 0: none */
 	int derivatives_from, derivatives;
 	bool jumps, remainder;      /* of formulas that jump, too; of the operator and the remainder each */
+	bool probe;                 /* with what says how long a series of theirs may be, */
+	int order;                  /* of this order; 0: as is best */
 	/* this param has that value, to see how the equations follow it; NULL: none has */
 	const char *varied;
 	mpq_srcptr value;

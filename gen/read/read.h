@@ -352,7 +352,8 @@ struct spec {                       /* what the text says, names resolved, nothi
 	} tuned;
 	int sensitivities;
 	struct sensitivity *sensitivity;
-	struct { int columns, own, stride; } joined; /* derivatives: coordinates before them, apart */
+	/* derivatives: coordinates before them, apart; behind them one that no param drives */
+	struct { int columns, own, stride; bool probe; } joined;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	struct { bool written, adopted; } units; /* dimensions are checked, unless they are another spec's */
@@ -386,7 +387,7 @@ bool is_constrained(const struct spec *spec, int component);
 bool parse_sensitivities(struct spec *spec, const struct source *source); /* of --sensitivity, instead of the spec's */
 /* To the spec, what so many derivatives follow: coordinates, equations, initial values, outputs behind its own */
 /* jumps: of formulas that the state, or a time that moves, chooses, too */
-void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder);
+void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder, bool probe);
 
 /* ---- params.c: other values of params than the spec's ---- */
 

@@ -463,7 +463,8 @@ static void vary(struct varying *v, struct extent before)
 		add_when(v, &spec->when[i]);
 	add_initials_of(v, before.initials);
 	add_fixed(v, before.fixeds);
-	add_outputs(v, before.symbols);
+	if (v->of->symbol->kind != SYMBOL_LET)
+		add_outputs(v, before.symbols);
 	if (spec->request.step && !is_zero_node(slope_by(spec->request.step, v->by)))
 		error(v->of->at, "--step gives the step another way", "the step follows from '%s'", v->of->name);
 }
@@ -484,8 +485,9 @@ struct node *slope_by_param(const struct spec *spec, const struct sensitivity *b
 	return slope_by(node, slope);
 }
 
-void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder)
+void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool remainder, bool probe)
 {
+	struct symbol nothing = { .kind = SYMBOL_LET, .name = "by_nothing" };
 	if (count == 0)
 		return;
 	if (jumps)
@@ -498,8 +500,11 @@ void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool r
 	spec->joined.stride = before.components + before.timed;
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->peak = false;                      /* the model's own outputs say when they were largest */
-	for (int i = first; i < first + count; i++) {
-		const struct sensitivity *s = &spec->sensitivity[i];
+	spec->joined.probe = probe;
+	/* by nothing at all: any solution, if it does not start from 0 */
+	const struct sensitivity none = { spec->sensitivity[first].at, &nothing, 0, 0, nothing.name };
+	for (int i = first; i < first + count + probe; i++) {
+		const struct sensitivity *s = i < first + count ? &spec->sensitivity[i] : &none;
 		struct varying v = { .spec = spec, .of = s, .suffix = suffix_of(s) };
 		v.by = (struct slope){ .at = s->at, .kind = SLOPE_PARAM, .name = s->name, .unexpanded = remainder };
 		v.by.param = s->symbol->kind == SYMBOL_PARAM ? s->symbol : NULL;

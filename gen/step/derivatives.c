@@ -40,6 +40,15 @@ static bool has_jumps(const struct step *step)
 	       (step->model->remainder.smooth.kind == SMOOTH_JUMP || loads_change(&step->model->system));
 }
 
+/* Whether series are as long as a tolerance allows, for all columns alike: the derivatives behind a step are linear in
+ * those before it, and backwards the same. */
+static bool holds_lengths(const struct step *step)
+{
+	return step->is.flow == FLOW_SERIES && step->taylor.expansion && !step->collocation &&
+	       step->model->truncation.adaptive && !step->taylor.switching && !goes_by_events(step->model) &&
+	       !has_jumps(step);
+}
+
 /* What of the request concerns how a step is made faster, or reports it, does not hold for the derivatives. */
 static struct request request_of_derivatives(const struct step *step, int first, int count)
 {
@@ -48,7 +57,8 @@ static struct request request_of_derivatives(const struct step *step, int first,
 	if (step->model->request.external)
 		request.sensitivity = external_columns(step->model);
 	request.again = (struct again){ .derivatives_from = first, .derivatives = count, .jumps = has_jumps(step),
-				  .remainder = step->is.flow == FLOW_RECIPE };
+				  .remainder = step->is.flow == FLOW_RECIPE, .probe = holds_lengths(step),
+				  .order = holds_lengths(step) ? order_of_step(step) : 0 };
 	request.scheme = scheme_of_derivatives(step);
 	if (goes_apart(step))
 		request.prefix = format("%s_d%d", step->model->name, first);

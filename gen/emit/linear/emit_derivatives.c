@@ -153,17 +153,18 @@ void emit_derivative_declarations(const struct emitter *e)
 /* ---- a block's model as an emitter of its own, whose numbers stand elsewhere ---- */
 
 /* Of a state of the block: the column that it is of, from 0; NONE: it is a state itself. *state: which; NONE: it is the
- * derivative of t, and 0; CLOCK: t */
-enum { CLOCK = -2 };
+ * derivative of t, and 0; CLOCK: t; PROBE - i: i by nothing */
+enum { CLOCK = -2, PROBE = -3 };
 static int column_of(const struct model *written, const struct derivative_block *block, int place, int *state)
 {
 	const struct model *model = block->step->model;
 	const int own = model->spec->joined.own, stride = model->spec->joined.stride;
 	const int coord = model->system.coord[place];
 	const int of = coord < own ? coord : (coord - own) % stride;
-	const bool added = of >= written->n;
-	*state = added ? (coord < own ? CLOCK : NONE) : place >= model->n ? written->system.velocity[of] : of;
-	return coord < own || added ? NONE : block->first + (coord - own) / stride;
+	const bool added = of >= written->n, probe = coord - own >= block->columns * stride;
+	const int same = added || place < model->n ? of : written->system.velocity[of];
+	*state = !added ? (probe ? PROBE - same : same) : coord < own ? CLOCK : NONE;
+	return coord < own || added || probe ? NONE : block->first + (coord - own) / stride;
 }
 
 static const char **places_of_states(const struct model *written, const struct derivative_block *block)
@@ -321,8 +322,8 @@ static void emit_block_beside(const struct emitter *e, int number)
 	}
 	for (int i = 0; i < inputs; i++)
 		input[i] = i < given_inputs(e) ? i : input_of_seed(e, block, i);
-	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state, -1: it is 0, -2: t%s */\n",
-	    e->name, inputs ? "; of each input the model's" : "");
+	say(b, "\n/* Of each state of $n its column, -1: it is a state of %s; which state, -1: it is 0, -2: t; "
+	       "-3 - i: i by nothing%s */\n", e->name, inputs ? "; of each input the model's" : "");
 	emit_int_list(b, "moved_column", states, column);
 	emit_int_list(b, "moved_state", states, state);
 	if (inputs)
@@ -334,8 +335,10 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
 		   { "TUNED", b->step->is.tuned }, { "SEGMENTS", b->system->segments }, { "PLACES", has_place(b) },
 		   { "CONSTRAINTS", b->model->equations.correction != NULL },
-		   { "FROM", block->first }, { "WIDE", block->columns }, { "DECLARED", e->model->declared_outputs });
+		   { "PROBED", b->model->spec->joined.probe }, { "FROM", block->first }, { "WIDE", block->columns },
+		   { "DECLARED", e->model->declared_outputs });
 	emit_moved_columns(b);
+	emit_counts_macro(b);
 	say(e, "#define PL_OF(name) %s_##name\n"
 	       "#define PL_OF_TYPE %s\n"
 	       "#define PL_ENDED(b) %s\n"

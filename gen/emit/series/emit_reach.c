@@ -43,6 +43,8 @@ bool shares_kinds(const struct emitter *e)
 {
 	int count[3] = { 0 };
 	for (int i = 0; i < e->system->states; i++) {
+		if (e->model->spec->joined.probe && e->system->coord[i] >= e->model->spec->joined.own)
+			continue;
 		bool moved = i < e->system->n && e->system->velocity[i] >= 0;
 		count[moved ? 0 : i < e->system->n ? 2 : 1]++;
 	}
@@ -51,8 +53,28 @@ bool shares_kinds(const struct emitter *e)
 
 /* ---- the last terms ---- */
 
+static void emit_counts(const struct emitter *e)
+{
+	const int own = e->model->spec->joined.own, states = e->system->states;
+	const int probe = own + e->model->spec->joined.columns * e->model->spec->joined.stride;
+	int *counts = ARRAY(int, (size_t)states);
+	if (!e->model->spec->joined.probe)
+		return;
+	for (int i = 0; i < states; i++)
+		counts[i] = e->system->coord[i] < own ? 1 : e->system->coord[i] < probe ? 0 : 2;
+	say(e, "\n/* What says how far a series holds: 1, a state; 2, a derivative by nothing; 0: others do not */\n");
+	emit_int_list(e, "counts", states, counts);
+}
+
+void emit_counts_macro(const struct emitter *e)
+{
+	if (e->model->spec->joined.probe)
+		say_macro(e, "COUNTS(i)", spell(e, "$n_counts[i]"));
+}
+
 void emit_reach_tables(const struct emitter *e)
 {
+	emit_counts(e);
 	if (!truncation_of(e)->adaptive || e->system->inputs)
 		return;
 	int order = e->step->taylor.expansion->order, most = most_served(e);
@@ -78,6 +100,7 @@ void emit_reach_sizes(const struct emitter *e)
 {
 	say(e, "#define PL_TOLERANCE %s\n"
 	       "#define PL_NOW y\n", shortest(round_rational(truncation_of(e)->tolerance)));
+	emit_counts_macro(e);
 	if (shares_kinds(e))
 		say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	if (truncation_of(e)->adaptive && has_unresolved(e))

@@ -36,6 +36,8 @@ int economical_order(struct step *step)
 {
 	const struct truncation *truncation = &step->model->truncation;
 	int best = truncation->order, least = least_order(truncation), multiplications;
+	if (step->model->request.again.order)
+		return step->model->request.again.order;
 	if (!truncation->adaptive || truncation->stages || loses_order(step->model))
 		return best;
 	double lowest = 0.95 * cost_of_order(step, best, &multiplications);
