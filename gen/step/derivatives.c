@@ -2,6 +2,7 @@
 /* Derivatives of a step: the spec joined by its derivative is a model of its own, of which the steps of the derivatives
  * are taken. What it does not couple leaves no trace there, and each of its numbers is rounded once. */
 #include "step/regions/regions.h"
+#include "step/series/expansion.h"
 #include "model/reads.h"
 #include "model/tunable/tuning.h"
 

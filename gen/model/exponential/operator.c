@@ -338,6 +338,17 @@ static struct form *remainder_of(struct building *b, const struct operator *oper
 	return left;
 }
 
+struct form *carried_form(const struct model *model, int force_column)
+{
+	const struct form *equation = model->equations.residual[model->remainder.row[force_column]].form;
+	struct form *carried = NEW(struct form);
+	form_add_to(carried, model->schedule.operator[0].left[force_column], NULL);
+	for (int i = 0; i < equation->terms; i++)
+		if (!is_highest(&model->frame, &equation->term[i].basis))
+			form_add_basis(carried, equation->term[i].basis, equation->term[i].factor);
+	return carried;
+}
+
 /* Whether contacts that rest press on a row, where a scheme leaves that over */
 static bool is_pressed(const struct model *model, int row)
 {

@@ -97,6 +97,8 @@ struct remainder {                  /* the remainder, of each operator */
 void build_operators(struct building *b);
 /* the model's, with the operator's C and K and the force columns */
 struct linear operator_system(const struct model *model, int k);
+/* What A, loads and inputs have of the equation of this force column, on its left side */
+struct form *carried_form(const struct model *model, int force_column);
 /* Every form that the remainders and the selector are made of, once, operands before what they make. */
 void visit_remainders(const struct model *model, void (*visit)(void *context, const struct form *form), void *context);
 

@@ -463,22 +463,40 @@ struct sum held_slope(struct sequencing *w, int state)
 	return slope;
 }
 
-int solved_force(const struct sequencing *w, int force_column)
+/* Whether the equation of this force column is solved together with what holds */
+static bool is_solved(const struct sequencing *w, int force_column)
 {
 	const struct model *model = w->step->model;
+	bool solved = false;
 	for (int j = 0; j < w->system->n && w->x->contacts; j++) {
 		const int velocity = w->system->velocity[j], state = velocity >= 0 ? velocity : j;
-		if (model->equations.owner[j] == model->remainder.row[force_column] && w->x->contacts->solved[state])
-			return w->x->contacts->bare[state];
+		solved = solved || (model->equations.owner[j] == model->remainder.row[force_column] &&
+				    w->x->contacts->solved[state]);
 	}
-	return NONE;
+	return solved;
+}
+
+int solved_force(struct sequencing *w, int force_column)
+{
+	const int row = w->step->model->remainder.row[force_column];
+	struct sum force = { 0 };
+	RATIONAL one = RATIO(1, 1);
+	if (!is_solved(w, force_column))
+		return NONE;
+	for (int j = 0; j < w->system->n; j++) {
+		mpq_srcptr mass = w->system->M[row * w->system->n + j];
+		if (mpq_sgn(mass) != 0)
+			sum_add(&force, TERM_SEQUENCE, w->highest[j], 0, mass);
+	}
+	sum_add_form(w, &force, carried_form(w->step->model, force_column), one);
+	return sequence_of_sum(w, &force);
 }
 
 int held_force(struct sequencing *w, int force_column)
 {
 	const struct contacts *c = w->x->contacts;
 	struct sum force = { 0 };
-	if (!c || solved_force(w, force_column) != NONE)
+	if (!c || is_solved(w, force_column))
 		return w->x->force[force_column];
 	RATIONAL one = ZERO;
 	mpq_set_ui(one, 1, 1);

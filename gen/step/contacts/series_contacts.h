@@ -65,8 +65,8 @@ void hold_contacts(struct sequencing *w);                    /* before the state
 bool is_bare(const struct sequencing *w, int state);         /* its slope without what holds is a sequence of its own */
 /* y' with what holds; where its velocity alone is held that is 0, exactly */
 struct sum held_slope(struct sequencing *w, int state);
-/* of a force column: the slope that is solved for, with what holds; NONE: it is not */
-int  solved_force(const struct sequencing *w, int force_column);
+/* of a force column: the slope that is solved for, with what holds, less what A has of it; NONE: it is not */
+int  solved_force(struct sequencing *w, int force_column);
 int  held_force(struct sequencing *w, int force_column);    /* the remainder, with what holds: a sequence */
 /* Of what outputs read: the sequence, of a highest derivative that of its state; NULL: they read nothing of it */
 int *motion_sequences(struct sequencing *w);

@@ -230,9 +230,10 @@ static void make_forces(struct sequencing *w)
 {
 	const struct model *model = w->step->model;
 	int *force = ARRAY(int, model->remainder.force_columns), *held = ARRAY(int, model->remainder.force_columns);
-	for (int e = 0; e < model->remainder.force_columns; e++)
-		force[e] = solved_force(w, e) != NONE ? solved_force(w, e)
-						      : sequence_of_form(w, model->schedule.operator[0].left[e]);
+	for (int e = 0; e < model->remainder.force_columns; e++) {
+		const int solved = solved_force(w, e);
+		force[e] = solved != NONE ? solved : sequence_of_form(w, model->schedule.operator[0].left[e]);
+	}
 	w->x->force = force;
 	for (int e = 0; e < model->remainder.force_columns; e++)
 		held[e] = held_force(w, e);
