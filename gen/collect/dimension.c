@@ -21,10 +21,10 @@ struct dimension dimension_without(int kind)
 	return d;
 }
 
-struct dimension dimension_of_time(int power)
+struct dimension dimension_of_time(void)
 {
 	struct dimension d = dimension_in(NULL);
-	mpq_set_si(d.base[SECOND], power, 1);
+	mpq_set_si(d.base[SECOND], 1, 1);
 	return d;
 }
 
@@ -334,7 +334,7 @@ static struct dimension of_node(struct dimensions *w, const struct node *node)
 		return of_name(w, node);
 	switch (node->kind) {
 	case NODE_TIME: {
-		struct dimension time = dimension_of_time(1);
+		struct dimension time = dimension_of_time();
 		time.bare = true;
 		return time;
 	}

@@ -68,7 +68,7 @@ static bool add_total(struct dimensions *w, const struct symbol *s)
 static void add_value(struct dimensions *w, const struct symbol *s)
 {
 	if (s->delayed) {
-		int time = add_pair(w, s, "the time of a delay", "t", s->at, dimension_of_time(1));
+		int time = add_pair(w, s, "the time of a delay", "t", s->at, dimension_of_time());
 		add_terms(w, time, s->when);
 		return;
 	}
@@ -256,7 +256,7 @@ static void add_need(struct dimensions *w, const struct need *need)
 				     of_symbol(w, output, 0));
 		add_terms(w, group, need->bound);
 	}
-	int time = add_pair(w, need->until, "an end", "t", need->at, dimension_of_time(1));
+	int time = add_pair(w, need->until, "an end", "t", need->at, dimension_of_time());
 	add_terms(w, time, need->until);
 	for (int i = 0; i < need->inputs; i++) {
 		const struct symbol *input = named(w->spec, need->input[i].name, SYMBOL_INPUT);
@@ -293,12 +293,12 @@ static void add_requested(struct dimensions *w)
 		const struct fixed *f = &spec->operators.fixed[i];
 		int group = add_pair(w, f, "the name", f->symbol ? f->symbol->name : "t", f->at,
 				     f->symbol ? of_state(w, f->symbol, f->component, f->primes)
-					       : dimension_of_time(1));
+					       : dimension_of_time());
 		for (int k = 0; k < f->values; k++)
 			add_terms(w, group, f->value[k]);
 	}
 	if (spec->request.step) {
-		int group = add_pair(w, &spec->request, "a step", "t", spec->request.step_at, dimension_of_time(1));
+		int group = add_pair(w, &spec->request, "a step", "t", spec->request.step_at, dimension_of_time());
 		add_terms(w, group, spec->request.step);
 	}
 	for (int i = 0; i < spec->required.needs; i++)
@@ -585,7 +585,7 @@ void adopt_units(struct spec *spec, const struct spec *given)
 
 void check_time(const struct node *node)
 {
-	struct dimension time = dimension_of_time(1);
+	struct dimension time = dimension_of_time();
 	if (node->unit && !rationals_equal(UNIT_BASES, (const mpq_t *)node->unit->base, (const mpq_t *)time.base))
 		error(node->unit->at, NULL, "the unit \"%s\" is no time", node->unit->text);
 }

@@ -57,7 +57,7 @@ struct dimensions {
 
 struct dimension dimension_in(const mpq_t *base);                  /* NULL: of a plain number */
 struct dimension dimension_without(int kind);
-struct dimension dimension_of_time(int power);
+struct dimension dimension_of_time(void);
 struct dimension dimension_difference(const struct dimensions *w, const struct dimension *a, const struct dimension *b);
 /* with what is bound put in */
 struct dimension dimension_resolved(const struct dimensions *w, const struct dimension *d);

@@ -37,7 +37,7 @@ void emit_kept_phi(const struct emitter *e)
 		return;
 	const bool leaps = has_jump(e) && !e->step->is.tuned;
 	if (e->model->relative && (leaps || flows_in_full(e->step)))
-		emit_matrix(e, e->step, false, format("static const double %s", stepped_table(e, "Phi")));
+		emit_matrix(e, e->step, false, format("static const double %s", stepped_table(e)));
 }
 
 static void emit_rounded(const struct emitter *e, int rows, int columns, const mpq_t *q, const char *const *row_note)

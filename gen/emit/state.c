@@ -155,10 +155,10 @@ const char *input_name(const struct emitter *e, int input, int order)
 	return NULL;
 }
 
-/* The table Phi, or Gamma, of the states as they are kept */
-const char *stepped_table(const struct emitter *e, const char *table)
+/* The table Phi of the states as they are kept */
+const char *stepped_table(const struct emitter *e)
 {
-	return format(e->model->relative ? "%s_%s_kept" : "%s_%s", e->name, table);
+	return format(e->model->relative ? "%s_Phi_kept" : "%s_Phi", e->name);
 }
 
 /* The mass that a kept velocity is multiplied with; NULL: 1 */
@@ -202,8 +202,7 @@ static bool is_read_full(const struct emitter *e)
 }
 
 /* The states wanted. `velocities`: without masses; else as the struct has them. */
-static void write_locals(const struct emitter *e, const bool *reads, const char *type, const char *vector,
-			 bool velocities)
+static void write_locals(const struct emitter *e, const bool *reads, const char *vector, bool velocities)
 {
 	const char *list = "";
 	bool forced = velocities && is_read_full(e);
@@ -211,7 +210,7 @@ static void write_locals(const struct emitter *e, const bool *reads, const char 
 	for (int i = 0; i < e->system->states; i++) {
 		const char *mass = velocities && !forced ? factor_of_momentum(e, i) : NULL;
 		if (!reads || reads[i])
-			list = format("%s%s%s = %s%s%s", list, *list ? ", " : format("%s ", type), e->local[i],
+			list = format("%s%s%s = %s%s%s", list, *list ? ", " : "const double ", e->local[i],
 				      e->at ? e->at->state[i] : format("%s[%d]", vector, place_of_state(e, i)),
 				      mass ? " / " : "", mass ? mass : "");
 	}
@@ -227,17 +226,17 @@ void emit_locals(const struct emitter *e, const bool *reads)
 	if (full && any)
 		say(e, "    double now[$N_STATES];\n"
 		       "    $n_%s(s, now);\n", e->model->relative ? "kept" : "get");
-	write_locals(e, reads, "const double", full ? "now" : "s->y", true);
+	write_locals(e, reads, full ? "now" : "s->y", true);
 }
 
 void emit_raw_locals(const struct emitter *e, const bool *reads)
 {
-	write_locals(e, reads, "const double", "s->y", false);
+	write_locals(e, reads, "s->y", false);
 }
 
 void emit_locals_of(const struct emitter *e, const bool *reads, const char *vector)
 {
-	write_locals(e, reads, "const double", vector, false);
+	write_locals(e, reads, vector, false);
 }
 
 const char *step_length(const struct emitter *e)

@@ -45,7 +45,7 @@ const char *state_list(const struct model *model);                /* x, x' */
 const char *carried_text(const struct emitter *e);                /* the states that only add up */
 const struct model *written_model(const struct model *model);      /* over whose coordinates its forms are */
 const char *input_name(const struct emitter *e, int input, int order); /* the C name of an input, of its slope */
-const char *stepped_table(const struct emitter *e, const char *table); /* Phi or Gamma of the states as they are kept */
+const char *stepped_table(const struct emitter *e); /* Phi of the states as they are kept */
 /* of a velocity that is kept as a momentum; NULL: it is not */
 const char *factor_of_momentum(const struct emitter *e, int state);
 void emit_locals(const struct emitter *e, const bool *reads);     /* the states wanted, under their names */

@@ -107,7 +107,7 @@ void place_loads_within(struct building *b, const struct form *form); /* of what
 void spread_loads(struct building *b, const struct form *form,
 		  void (*spread)(void *context, int load, int column, mpq_srcptr factor), void *context);
 /* one row of everything */
-void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual);
+void fill_system(struct building *b, struct linear *system, int row, const struct form *residual);
 /* the model's coordinates, loads and inputs; no factors yet */
 struct linear empty_system(const struct model *model);
 

@@ -144,11 +144,11 @@ struct linear empty_system(const struct model *model)
 	return system;
 }
 
-void fill_system(struct building *b, struct linear *system, int segment, int row, const struct form *residual)
+void fill_system(struct building *b, struct linear *system, int row, const struct form *residual)
 {
 	fill_row(system, row, residual);
 	fill_inputs(system, row, residual);
-	spread_loads(b, residual, add_force, &(struct force_row){ system, segment, row });
+	spread_loads(b, residual, add_force, &(struct force_row){ system, 0, row });
 }
 
 const struct form *nominal_form(struct building *b, const struct form *form)

@@ -42,7 +42,7 @@ static void text_one(FILE *to, const struct found *f, int number)
 	if (!f->why)
 		fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < f->poles; i++)
-		fprintf(to, "    %s\n", pole_row(&f->pole[i], 36));
+		fprintf(to, "    %s\n", pole_row(&f->pole[i]));
 }
 
 static void json_one(FILE *to, const struct found *f, int number)

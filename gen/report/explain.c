@@ -60,7 +60,7 @@ static void text_poles(FILE *to, const struct model *model, const struct resolve
 	int count = poles_of(model, resolvent, &pole);
 	fprintf(to, "    %-36s %-16s damping ratio\n", "pole [1/s]", "frequency [Hz]");
 	for (int i = 0; i < count; i++)
-		fprintf(to, "    %s\n", pole_row(&pole[i], 36));
+		fprintf(to, "    %s\n", pole_row(&pole[i]));
 }
 
 void text_linear_part(FILE *to, const struct step *step)

@@ -23,9 +23,9 @@ const char *pole_text(const struct pole_report *r)
 	return r->multiplicity > 1 ? format("%s  (%d-fold)", text, r->multiplicity) : text;
 }
 
-const char *pole_row(const struct pole_report *r, int width)
+const char *pole_row(const struct pole_report *r)
 {
-	return format("%-*s %-16.8g %.8g", width, pole_text(r), mpfr_get_d(r->hertz, MPFR_RNDN),
+	return format("%-36s %-16.8g %.8g", pole_text(r), mpfr_get_d(r->hertz, MPFR_RNDN),
 		      mpfr_get_d(r->damping_ratio, MPFR_RNDN));
 }
 

@@ -23,7 +23,7 @@ struct picture_look;
 
 const char *pole_text(const struct pole_report *report);
 /* the pole, in so many columns; frequency, damping */
-const char *pole_row(const struct pole_report *report, int width);
+const char *pole_row(const struct pole_report *report);
 const char *two_digits(double count);                       /* 5200, of 5234 */
 double growth_rate(const struct step *step);                /* [1/s] */
 const char *polynomial_text(int length, const mpq_t *c);    /* in s */

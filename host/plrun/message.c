@@ -87,17 +87,17 @@ static void print_line(struct place at)
 	fputs("^\n", stderr);
 }
 
-void say_at(struct place at, const char *kind, const char *message)
+void say_at(struct place at, const char *message)
 {
 	progress_end();
-	fprintf(stderr, "%s:%lu:%zu: %s: %s\n", at.path, at.number, at.column + 1, kind, message);
+	fprintf(stderr, "%s:%lu:%zu: error: %s\n", at.path, at.number, at.column + 1, message);
 	if (at.length)
 		print_line(at);
 }
 
 void fail_at(struct place at, const char *note, const char *message)
 {
-	say_at(at, "error", message);
+	say_at(at, message);
 	if (note)
 		fprintf(stderr, "note: %s\n", note);
 	exit(WRONG_DATA);

@@ -82,7 +82,7 @@ struct place {
 	const char *line;
 	size_t length, column;
 };
-void say_at(struct place at, const char *kind, const char *message);      /* kind: error, warning */
+void say_at(struct place at, const char *message);
 _Noreturn void fail_at(struct place at, const char *note, const char *message); /* note: NULL for none */
 
 bool progress_wanted(void);                             /* a terminal, and a fifth of a second since the last line */

@@ -72,7 +72,7 @@ struct list {
 static _Noreturn void wrong_at(const struct list *l, const char *at, const char *message, const char *note)
 {
 	const size_t column = (size_t)(at - l->text);
-	say_at((struct place){ "<command line>", 1, l->text, strlen(l->text), column }, "error", message);
+	say_at((struct place){ "<command line>", 1, l->text, strlen(l->text), column }, message);
 	fprintf(stderr, "note: %s\n", note);
 	exit(WRONG_USAGE);
 }

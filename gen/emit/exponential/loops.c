@@ -111,7 +111,7 @@ static const char *phi_text(const struct emitter *e, int t)
 {
 	if (t > 0)
 		return matrix_text(e, e->step->branch->full->wanted[t].name);
-	const char *first = format("%s[0]", stepped_table(e, "Phi"));
+	const char *first = format("%s[0]", stepped_table(e));
 	return many_operators(e) ? format("which ? %s_full[which - 1][0] : %s", e->name, first) : first;
 }
 

@@ -289,7 +289,7 @@ static void emit_block_at(const struct emitter *e, const struct derivative_block
 	emit_load_states(b, wanted_loads(b, x->load), false);
 	for (int i = 0; i < b->system->states; i++)
 		say(e, "    x[%d] = %s;\n", i, b->at->state[i]);
-	store_loads(b, x->load, "");
+	store_loads(b, x->load);
 	store_inputs(b, x->input);
 	say(e, "    pl_series_advance(&series, tau, x, work);\n");
 	for (int i = 0; i < b->system->states; i++)

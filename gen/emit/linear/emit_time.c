@@ -36,12 +36,12 @@ static void emit_held(const struct emitter *e)
 }
 
 /* x[...] = the load states, from index[l] on */
-void store_loads(const struct emitter *e, const int *index, const char *member)
+void store_loads(const struct emitter *e, const int *index)
 {
 	for (int l = 0; l < e->system->loads; l++)
 		for (int k = 0; k < e->system->load[l].columns && index[l] >= 0; k++) {
 			const char *value = load_operand(e, l, k);
-			say(e, "    x[%d]%s = %s;\n", index[l] + k, member, value ? value : "1.0");
+			say(e, "    x[%d] = %s;\n", index[l] + k, value ? value : "1.0");
 		}
 }
 
@@ -137,7 +137,7 @@ void emit_series_vector(const struct emitter *e, bool looped)
 		emit_remainder_now(e);
 	say(e, "    $n_%s(s, x);\n", full ? "kept" : "stored_state");
 	emit_held(e);
-	store_loads(e, layout->load, "");
+	store_loads(e, layout->load);
 	store_inputs(e, layout->input);
 	if (force_columns)
 		say(e, "    for (i = 0; i < %d; i++) { x[%d + i] = %s; }\n", force_columns, layout->force_column,
@@ -427,7 +427,7 @@ static void emit_second_words(const struct emitter *e)
 	for (int i = 0; i < n * n; i++)
 		low[i] = e->step->branch->full->Phi[i].low;
 	emit_array(e, format("Low parts of the transfer matrix: %s has the high parts",
-		   stepped_table(e, "Phi")), "Phi_low", 2,
+		   stepped_table(e)), "Phi_low", 2,
 		   (const int[]){ n, n }, low, e->model->names.state);
 }
 
@@ -515,5 +515,5 @@ void emit_jump(const struct emitter *e)
 		   { "COMPENSATED", !converts(e) && e->step->program->compensated },
 		   { "CARRIES", converts(e) ? 0 : emit_carried(e) }, { "ENTRIES", entries });
 	say(e, "#define PL_PHI %s\n"
-	       "#include \"jump.h\"\n", stepped_table(e, "Phi"));
+	       "#include \"jump.h\"\n", stepped_table(e));
 }

@@ -26,7 +26,7 @@ void emit_refreshed_loads(const struct emitter *e, const bool *loads);
 /* declares load states, and i where one is `looped` over; x[...] = what the series advances */
 void emit_series_vector(const struct emitter *e, bool looped);
 /* x[...] = load states, from index[l] on, and inputs; which loads have an index */
-void store_loads(const struct emitter *e, const int *index, const char *member);
+void store_loads(const struct emitter *e, const int *index);
 bool *wanted_loads(const struct emitter *e, const int *index);
 void store_inputs(const struct emitter *e, const int *index);
 void emit_series_slopes(const struct emitter *e);                  /* A, of x' = A x */

@@ -68,7 +68,7 @@ void emit_expansion_place(const struct emitter *e)
 /* What is not finite is not kept: the state stays as it was. */
 static void emit_keep(const struct emitter *e)
 {
-	say_wrapped(e, format("if (%s) {  /* one of them is not finite */\n", is_not_finite(e, "next", "")));
+	say_wrapped(e, format("if (%s) {  /* one of them is not finite */\n", is_not_finite(e)));
 	say(e, moving_masses(e) ? "        s->status |= $n_cause(s, 0, y, PL_NOT_FINITE);\n"
 				: "        s->status |= PL_NOT_FINITE;\n");
 	say(e, "    } else {\n");

@@ -109,7 +109,7 @@ void emit_over_block(const struct emitter *e)
 		say(e, "    const double base%d = s->low[%d];\n"
 		       "    double low%d = base%d;\n", i, i, i, i);
 	emit_series_ends(e);
-	say_wrapped(e, format("if (%s) { return 0; }\n", is_not_finite(e, "next", "")));
+	say_wrapped(e, format("if (%s) { return 0; }\n", is_not_finite(e)));
 	emit_rows_of_block(e);
 	say(e, "    return 1;\n"
 	       "}\n");

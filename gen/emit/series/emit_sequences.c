@@ -288,12 +288,12 @@ void emit_series_ends(const struct emitter *e)
 				      coefficient(e, i, 0), full_gain(e, i, coefficient, "0.0"), i));
 }
 
-/* Whether one of what is called so, with the number of a state, is not finite: its difference from itself is not 0 */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after)
+/* Whether the next value of a state is not finite: its difference from itself is not 0 */
+const char *is_not_finite(const struct emitter *e)
 {
 	const char *sum = "";
 	for (int i = 0; i < e->system->states; i++)
-		sum = format("%s%s(%s%d%s - %s%d%s)", sum, i ? " + " : "", before, i, after, before, i, after);
+		sum = format("%s%s(next%d - next%d)", sum, i ? " + " : "", i, i);
 	return format("%s != 0.0", sum);
 }
 

@@ -18,7 +18,7 @@ const char *plus(const char *sum, const char *term);                     /* in b
 /* C: two arguments of pl_accumulate; `none` where there are no terms */
 const char *full_gain(const struct emitter *e, int state, gain_term *term, const char *none);
 void emit_series_ends(const struct emitter *e);                         /* next0, rest0, ...: where it ends */
-const char *is_not_finite(const struct emitter *e, const char *before, const char *after);
+const char *is_not_finite(const struct emitter *e);
 bool is_written_out(const struct emitter *e, int degree);                /* else loops go over its sum */
 
 /* ---- emit_series.c: the coefficients of a series as C ---- */

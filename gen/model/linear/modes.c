@@ -116,10 +116,10 @@ static double largest_eigenvalue(const struct mode_basis *basis)
 	return largest;
 }
 
-/* To the nearest of so many bits */
-static void round_to_bits(mpq_ptr q, int bits)
+/* To the nearest of so many bits as modes have */
+static void round_to_bits(mpq_ptr q)
 {
-	REAL x = WITH_BITS(bits);
+	REAL x = WITH_BITS(MODE_BITS);
 	mpfr_set_q(x, q, MPFR_RNDN);
 	mpfr_get_q(q, x);
 }
@@ -133,7 +133,7 @@ static void clear_small(int count, mpq_t *x, int stride)
 		if (fabs(nearest_double(x[i * stride])) <= 1e-30 * largest)
 			mpq_set_ui(x[i * stride], 0, 1);
 		else
-			round_to_bits(x[i * stride], MODE_BITS);
+			round_to_bits(x[i * stride]);
 }
 
 /* Of two poles 0: 1 in the largest coordinate, in which the second state has no part */
@@ -290,7 +290,7 @@ static void lift_exactly(const struct modes *modes, struct mode *mode, const mpq
 		for (int j = 0; j < c; j++) {
 			mpq_neg(mode->block[(c + i) * k + j], theta[i * c + j]);
 			mpq_neg(mode->block[(c + i) * k + c + j], damping[i * c + j]);
-			round_to_bits(mode->block[(c + i) * k + c + j], MODE_BITS);
+			round_to_bits(mode->block[(c + i) * k + c + j]);
 		}
 		for (int j = 0; j < n; j++) {
 			mpq_set(mode->right[j * k + i], X[j * c + i]);

@@ -242,7 +242,7 @@ static struct linear system_in_region(struct building *b, const struct switching
 	struct linear system = empty_system(b->model);
 	system.segments = 1;
 	for (int k = 0; k < s->rows; k++)
-		fill_system(b, &system, 0, s->row[k], s->region[region].residual[s->row[k]]);
+		fill_system(b, &system, s->row[k], s->region[region].residual[s->row[k]]);
 	return system;
 }
 
@@ -375,7 +375,7 @@ static void fill_first_regions(struct building *b, struct switching *s)
 		const struct switching *own = s->part[p].model->switching;
 		int first = first_region(own);
 		for (int k = 0; k < own->rows; k++)
-			fill_system(b, s->system, 0, own->row[k], own->region[first].residual[own->row[k]]);
+			fill_system(b, s->system, own->row[k], own->region[first].residual[own->row[k]]);
 	}
 }
 
