@@ -7,7 +7,7 @@
  *     PL_BY_PHI                  1: PL(Phi) is the derivative of every step by the state, and PL(move_d) a step of
  *                                derivatives alone
  *     PL_BY_ROWS                 1: that of outputs is the same all along.  PL_DECLARED  0: outputs are the states
- *     PL_STRIDE                  1, or at least so many steps are taken backwards at once, from where a series begins
+ *     PL_STRIDE                  1, or at least so many steps are taken backwards at once, from where PL_ENDED(s)
  *     PL(d_input)[]              of each column the input that it is along, or -1; where PL_SEEDED
  *
  * Where PL_BY_PHI is 0 the derivatives of a step by its state are taken as columns of PL(step_d), as many at a time as
@@ -370,7 +370,7 @@ static size_t PL(go_far)(PL_TYPE *s, size_t *row, size_t far, size_t most)
 	while (*row < far && at < most) {
 		PL(step)(&next);
 		at++;
-		if (next.served == next.valid) {
+		if (PL_ENDED(&next)) {
 			*s = next;
 			*row = at;
 		}

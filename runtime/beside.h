@@ -19,6 +19,8 @@
  *                                -3 - i: i, of a derivative by nothing
  *     PL_PROBED                  1: series as long as a tolerance allows end where the model's do, or where the
  *                                derivative of which PL_COUNTS is 2 lets them, whatever the others are
+ *     PL_ALIGNED                 1: a collocation, whose steps begin anew where PL_ENDED(s) of the model, as long as
+ *                                PL_SHARE of its own; PL_TURNS 1: it takes turns with a series
  *     PL_MOVED                   columns that go through events: member contact.doubt
  *     PL(moved_input)[PL_INPUTS]     of each input the model's; behind the first PL_OWN_INPUTS stand seeds */
 #include "numbers.h"
@@ -142,6 +144,43 @@ static void PL(probe)(PL_TYPE *b, const PL_OF_TYPE *s)
 }
 #endif
 
+#if PL_ALIGNED
+/* Anew at every eighth step of h, unless the model is in the internal step that it was in at the one before, with what
+ * that knows: they start from nothing that they have chosen, so backwards they are the same. */
+static void PL(begin_steps)(PL_TYPE *b, const PL_OF_TYPE *s, real z[PL_STATES])
+{
+	const real past = (real)(s->k % 8), ends = past + s->size + (s->at - (real)s->back);
+	const int eighths = (int)(ends / 8);
+	real y[PL_OWN_STATES];
+	int i;
+	PL_OF(exactly)(s, y);
+	for (i = 0; i < PL_STATES; i++) {
+		z[i] = PL_COUNTS(i) ? y[PL(moved_state)[i]] : z[i];
+	}
+#if PL_CONSTRAINTS
+	(void)PL(project_rounded)(b, 0, z);
+#endif
+	for (i = 0; i < PL_STATES; i++) {
+		const int of = PL(moved_state)[i];
+		b->y[i] = z[i];
+		b->low[i] = PL_COUNTS(i) ? s->low[of] : 0;
+		b->scale[i] = PL_COUNTS(i) ? s->scale[of] : 0;
+		b->unit[i] = PL_COUNTS(i) ? s->unit[of] : 0;
+	}
+	PL(anew)(b);
+	b->until = b->k - s->k % 8 + 8 * (eighths + (ends > (real)(8 * eighths)));
+	b->want = (real)PL_SHARE * (s->size > 0 ? s->size : s->want);
+#if PL_TURNS
+	b->series = s->series;
+	b->stiff = s->stiff;
+	b->product = s->product;
+	b->bounds = s->bounds;
+	b->patience = s->patience;
+	b->run = s->run;
+#endif
+}
+#endif
+
 /* The states are the model's where a series begins, so that the derivatives are of what it computes; what was set
  * meanwhile begins anew. */
 static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
@@ -156,7 +195,7 @@ static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 	left = PL(is_left)(b, s, ds, z);
 	if (!left) {
 		PL(set)(b, PL_OF(time)(s), z);
-#if PL_CONSTRAINTS && !PL_PROBED
+#if PL_CONSTRAINTS && !PL_PROBED && !PL_ALIGNED
 		/* Seeds, which have no time (back.h), need not fulfil the derivatives of the constraints: what they
 		 * miss would
 		 * go other ways by other steps, and the derivatives of a step were not linear in them. */
@@ -185,6 +224,10 @@ static void PL(follow)(PL_TYPE *b, const PL_OF_TYPE *s, const PL_OF(d) *ds)
 	}
 	if (PL_ENDED(b)) {
 		PL(probe)(b, s);
+	}
+#elif PL_ALIGNED
+	if (!left || PL_ENDED(s)) {
+		PL(begin_steps)(b, s, z);
 	}
 #endif
 }

@@ -18,6 +18,17 @@ static void PL(within)(const real c[PL_STAGES + 1][PL_COLUMNS], real theta, real
 	}
 }
 
+/* So long is the next internal step if it is no longer than `limit`, in h */
+static inline real PL(wanted)(real want, real limit)
+{
+#if PL_ALIGNED
+    const real steps = limit / want + (real)0.8; /* all that are left as long, a fifth longer than wanted at most */
+    return steps < 2 ? limit : steps < 1024 ? limit / (real)(int)steps : want;
+#else
+    return want < limit ? want : limit;
+#endif
+}
+
 #if PL_ORDER > 0
 #include "switches.h"
 #endif
@@ -109,6 +120,33 @@ static real PL(finish)(const real y[PL_STATES], real dt, const real unit[PL_STAT
 	}
 	return PL(ends)(y, gain) ? most / (real)((uint32_t)1 << (2 * PL_STAGES - 1)) : (real)1e35;
 }
+
+#if PL_FOLLOWED
+/* The state now: the polynomial of an internal step is less exact than its end, so there is one that ends here. */
+static void PL(exactly)(const PL_TYPE *s, real y[PL_STATES])
+{
+    const real none[1] = {0}, ahead = -PL(since)(s);
+    real known[PL_STAGES][PL_ROOM(PL_KNOWN)], jacobian[PL_ROOM(PL_ENTRIES)], left[PL_COORDS];
+    real poly[PL_STAGES + 1][PL_COLUMNS], unit[PL_STATES], k[PL_UNKNOWNS], gain[PL_STATES];
+    int i, short_of = ahead > 0 && ahead < s->size;
+#if PL_ORDER > 0
+    short_of = short_of && !s->series; /* that is as exact all along */
+#endif
+    for (i = 0; i < PL_STATES; i++) {
+        y[i] = s->y[i];
+    }
+    if (short_of) {
+        PL(here)(s, none, none, left, jacobian);
+        PL(continue)((const real (*)[PL_COLUMNS])s->poly, 0, ahead * s->per, s->per / PL_H, k);
+        if (PL(solve)(s, none, none, jacobian, ahead, known, unit, k)) {
+            (void)PL(finish)(s->start, ahead * PL_H, unit, k, poly, gain);
+            for (i = 0; i < PL_STATES; i++) {
+                y[i] = s->start[i] + (gain[i] + s->low[i]);
+            }
+        }
+    }
+}
+#endif
 
 #if PL_ARGUMENTS > 0 || PL_SWITCHING_FUNCTIONS > 0
 /* Polynomials in powers of theta that are constant so far: c[0] is theirs to fill */

@@ -3,26 +3,34 @@
  * as they stand, in loops that are written out; more with pivots; those of many coordinates by the modes of the stages,
  * systems of the size of the coordinates, with the Jacobian of the step's start and one factorization for it. */
 
+#ifndef PL_BLOCK
+#define PL_BLOCK PL_COORDS
+#endif
+
 #if PL_DIFFERENCES
 /* The highest derivatives at y and their Jacobian: each state is moved by half the digits of the largest of its kind.
  * Newton's method takes it for what it is, so that its error is none of the step. */
 static void PL(linearize)(const real known[], const int interval[], const real y[PL_STATES], real left[], real slope[])
 {
     real moved[PL_STATES], other[PL_COORDS], largest[3] = {0, 0, 0};
-    int i, j;
+    int i, j, place = 0;
     for (j = 0; j < PL_STATES; j++) {
         const real size = pl_magnitude(moved[j] = y[j]);
-        largest[PL_KIND(j)] = size > largest[PL_KIND(j)] ? size : largest[PL_KIND(j)];
+        largest[PL_KIND(j)] = PL_COUNTS(j) && size > largest[PL_KIND(j)] ? size : largest[PL_KIND(j)];
     }
     PL(forces)(known, interval, y, left);
     for (j = 0; j < PL_STATES; j++) {
         const real size = largest[PL_KIND(j)];
+        if (!PL_COUNTS(j)) {
+            continue;
+        }
         moved[j] = y[j] + PL_HALF_DIGITS * (size > 0 ? size : 1);
         PL(forces)(known, interval, moved, other);
-        for (i = 0; i < PL_COORDS; i++) {
-            slope[i * PL_STATES + j] = (other[i] - left[i]) / (moved[j] - y[j]);
+        for (i = 0; i < PL_BLOCK; i++) {
+            slope[i * (PL_ENTRIES / PL_BLOCK) + place] = (other[i] - left[i]) / (moved[j] - y[j]);
         }
         moved[j] = y[j];
+        place++;
     }
 }
 #endif
@@ -98,17 +106,28 @@ static inline real PL(corrected)(real dt, const real unit[PL_STATES], const real
     return change;
 }
 
+/* In a model of derivatives each column has the Jacobian of the coordinates themselves: they are solved block by block.
+ * How columns follow the coordinates is left to one more iteration, where those are found. */
+#define PL_ALIKE (PL_COORDS / PL_BLOCK)
+#define PL_EQUATIONS (PL_STAGES * PL_BLOCK)
+
+/* Where equation i of a block stands among the unknowns */
+static inline int PL(unknown)(int block, int i)
+{
+    return i / PL_BLOCK * PL_COORDS + block * PL_BLOCK + i % PL_BLOCK;
+}
+
 #if PL_MODES == 0
 
-#if PL_UNKNOWNS <= 10
+#if PL_EQUATIONS <= 10
 /* Row i less what the rows before take, and its factors in their place.  Without pivots: of a step that is short enough
  * the diagonal is near 1. */
-static inline void PL(reduce)(int i, real matrix[PL_UNKNOWNS][PL_UNKNOWNS], real pivot[PL_UNKNOWNS],
+static inline void PL(reduce)(int i, real matrix[PL_EQUATIONS][PL_EQUATIONS], real pivot[PL_EQUATIONS],
                               real right[PL_UNKNOWNS])
 {
     int j, k;
     PL_UNROLL
-    for (j = 0; j < PL_UNKNOWNS; j++) {
+    for (j = 0; j < PL_EQUATIONS; j++) {
         const int most = i < j ? i : j;
         real sum = matrix[i][j];
         PL_UNROLL
@@ -116,25 +135,40 @@ static inline void PL(reduce)(int i, real matrix[PL_UNKNOWNS][PL_UNKNOWNS], real
             sum -= matrix[i][k] * matrix[k][j];
         }
         matrix[i][j] = j < i ? sum * pivot[j] : sum;
-        if (j < i) {
-            right[i] -= matrix[i][j] * right[j];
+        for (k = 0; k < PL_ALIKE && j < i; k++) {
+            right[PL(unknown)(k, i)] -= matrix[i][j] * right[PL(unknown)(k, j)];
         }
     }
     pivot[i] = 1 / matrix[i][i];
 }
 
 /* right becomes the solution. */
-static inline void PL(substitute)(real matrix[PL_UNKNOWNS][PL_UNKNOWNS], const real pivot[PL_UNKNOWNS],
-                                  real right[PL_UNKNOWNS])
+static inline void PL(substitute)(real matrix[PL_EQUATIONS][PL_EQUATIONS], const real pivot[PL_EQUATIONS],
+                                  int block, real right[PL_UNKNOWNS])
 {
     int i, j;
     PL_UNROLL
-    for (i = PL_UNKNOWNS - 1; i >= 0; i--) {
+    for (i = PL_EQUATIONS - 1; i >= 0; i--) {
+        real *const value = &right[PL(unknown)(block, i)];
         PL_UNROLL
-        for (j = PL_UNKNOWNS - 1; j > i; j--) {
-            right[i] -= matrix[i][j] * right[j];
+        for (j = PL_EQUATIONS - 1; j > i; j--) {
+            *value -= matrix[i][j] * right[PL(unknown)(block, j)];
         }
-        right[i] *= pivot[i];
+        *value *= pivot[i];
+    }
+}
+#else
+static inline void PL(substitute)(real matrix[PL_EQUATIONS][PL_EQUATIONS], const int pivot[PL_EQUATIONS], int block,
+                                  real right[PL_UNKNOWNS])
+{
+    real part[PL_EQUATIONS];
+    int i;
+    for (i = 0; i < PL_EQUATIONS; i++) {
+        part[i] = right[PL(unknown)(block, i)];
+    }
+    pl_solve(PL_EQUATIONS, matrix[0], pivot, part);
+    for (i = 0; i < PL_EQUATIONS; i++) {
+        right[PL(unknown)(block, i)] = part[i];
     }
 }
 #endif
@@ -143,11 +177,11 @@ static inline void PL(substitute)(real matrix[PL_UNKNOWNS][PL_UNKNOWNS], const r
 static real PL(iterate)(const real y[PL_STATES], const real known[PL_STAGES][PL_ROOM(PL_KNOWN)], const int interval[],
                         real dt, const real unit[PL_STATES], real k[PL_UNKNOWNS])
 {
-    real matrix[PL_UNKNOWNS][PL_UNKNOWNS], right[PL_UNKNOWNS];
-#if PL_UNKNOWNS <= 10
-    real pivot[PL_UNKNOWNS];
+    real matrix[PL_EQUATIONS][PL_EQUATIONS], right[PL_UNKNOWNS];
+#if PL_EQUATIONS <= 10
+    real pivot[PL_EQUATIONS];
 #else
-    int pivot[PL_UNKNOWNS];
+    int pivot[PL_EQUATIONS];
 #endif
     int i, j, c;
     PL_WRITTEN_OUT
@@ -157,53 +191,56 @@ static real PL(iterate)(const real y[PL_STATES], const real known[PL_STAGES][PL_
         PL(linearize)(known[i], interval, stage, left, jacobian);
         PL_WRITTEN_OUT
         for (c = 0; c < PL_COORDS; c++) {
-            const int row = i * PL_COORDS + c;
-            right[row] = left[c] - k[row];
+            right[i * PL_COORDS + c] = left[c] - k[i * PL_COORDS + c];
+        }
+        PL_WRITTEN_OUT
+        for (c = 0; c < PL_BLOCK; c++) {
+            const int row = i * PL_BLOCK + c;
             PL_WRITTEN_OUT
-            for (j = 0; j < PL_UNKNOWNS; j++) {
+            for (j = 0; j < PL_EQUATIONS; j++) {
                 matrix[row][j] = j == row ? 1 : 0;
             }
         }
         PL_WRITTEN_OUT
         for (c = 0; c < PL_ENTRIES; c++) {
-            const int row = i * PL_COORDS + PL(entry)[c][0], of = PL(entry)[c][1], twice = PL(entry)[c][2];
+            const int row = i * PL_BLOCK + PL(entry)[c][0], of = PL(entry)[c][1], twice = PL(entry)[c][2];
             const real factor = jacobian[c] * (twice ? dt * dt : dt);
             PL_WRITTEN_OUT
             for (j = 0; j < PL_STAGES; j++) {
-                matrix[row][j * PL_COORDS + of] -= factor * (twice ? PL(twice)[i][j] : PL(once)[i][j]);
+                matrix[row][j * PL_BLOCK + of] -= factor * (twice ? PL(twice)[i][j] : PL(once)[i][j]);
             }
         }
-#if PL_UNKNOWNS <= 10
+#if PL_EQUATIONS <= 10
         PL_UNROLL
-        for (c = 0; c < PL_COORDS; c++) {
-            PL(reduce)(i * PL_COORDS + c, matrix, pivot, right);
+        for (c = 0; c < PL_BLOCK; c++) {
+            PL(reduce)(i * PL_BLOCK + c, matrix, pivot, right);
         }
 #endif
     }
-#if PL_UNKNOWNS <= 10
-    PL(substitute)(matrix, pivot, right);
-#else
-    if (!pl_factor(PL_UNKNOWNS, matrix[0], pivot)) {
+#if PL_EQUATIONS > 10
+    if (!pl_factor(PL_EQUATIONS, matrix[0], pivot)) {
         return (real)1e30;
     }
-    pl_solve(PL_UNKNOWNS, matrix[0], pivot, right);
 #endif
+    for (i = 0; i < PL_ALIKE; i++) {
+        PL(substitute)(matrix, pivot, i, right);
+    }
     return PL(corrected)(dt, unit, right, k);
 }
 
 #else
 
 typedef struct PL(factors) { /* of the matrices of one step */
-    real real_mode[PL_COORDS][PL_COORDS], pair[PL_MODES - 1][PL_COORDS][PL_COORDS][2];
-    int pivot[PL_MODES][PL_COORDS];
+    real real_mode[PL_BLOCK][PL_BLOCK], pair[PL_MODES - 1][PL_BLOCK][PL_BLOCK][2];
+    int pivot[PL_MODES][PL_BLOCK];
 } PL(factors);
 
 /* 1 - dt z J_v - dt^2 z^2 J_x for each z of a step of dt [s]: 1, or 0 where one is singular */
 static int PL(factorize)(const real jacobian[PL_ROOM(PL_ENTRIES)], real dt, PL(factors) *f)
 {
     int i, j, m, good;
-    for (i = 0; i < PL_COORDS; i++) {
-        for (j = 0; j < PL_COORDS; j++) {
+    for (i = 0; i < PL_BLOCK; i++) {
+        for (j = 0; j < PL_BLOCK; j++) {
             f->real_mode[i][j] = i == j ? 1 : 0;
             for (m = 0; m < PL_MODES - 1; m++) {
                 f->pair[m][i][j][0] = i == j ? 1 : 0;
@@ -224,23 +261,24 @@ static int PL(factorize)(const real jacobian[PL_ROOM(PL_ENTRIES)], real dt, PL(f
             }
         }
     }
-    good = pl_factor(PL_COORDS, f->real_mode[0], f->pivot[0]);
+    good = pl_factor(PL_BLOCK, f->real_mode[0], f->pivot[0]);
     for (m = 1; m < PL_MODES; m++) {
-        good = pl_factor_complex(PL_COORDS, f->pair[m - 1][0][0], f->pivot[m]) && good;
+        good = pl_factor_complex(PL_BLOCK, f->pair[m - 1][0][0], f->pivot[m]) && good;
     }
     return good;
 }
 
-/* What mode m gives of the correction d for this right side */
-static inline void PL(add_mode)(const PL(factors) *f, int m, const real right[PL_UNKNOWNS], real d[PL_UNKNOWNS])
+/* What mode m gives of the correction d of a block, from coordinate `from` on, for this right side */
+static inline void PL(add_mode)(const PL(factors) *f, int m, int from, const real right[PL_UNKNOWNS],
+                                real d[PL_UNKNOWNS])
 {
-    real part[2 * PL_COORDS];
+    real part[2 * PL_BLOCK];
     int i, c;
-    for (c = 0; c < PL_COORDS; c++) {
+    for (c = 0; c < PL_BLOCK; c++) {
         real re = 0, im = 0;
         for (i = 0; i < PL_STAGES; i++) {
-            re += PL(to_mode)[m][i][0] * right[i * PL_COORDS + c];
-            im += PL(to_mode)[m][i][1] * right[i * PL_COORDS + c];
+            re += PL(to_mode)[m][i][0] * right[i * PL_COORDS + from + c];
+            im += PL(to_mode)[m][i][1] * right[i * PL_COORDS + from + c];
         }
         part[m ? 2 * c : c] = re;
         if (m) {
@@ -248,14 +286,15 @@ static inline void PL(add_mode)(const PL(factors) *f, int m, const real right[PL
         }
     }
     if (m) {
-        pl_solve_complex(PL_COORDS, f->pair[m - 1][0][0], f->pivot[m], part);
+        pl_solve_complex(PL_BLOCK, f->pair[m - 1][0][0], f->pivot[m], part);
     } else {
-        pl_solve(PL_COORDS, f->real_mode[0], f->pivot[0], part);
+        pl_solve(PL_BLOCK, f->real_mode[0], f->pivot[0], part);
     }
     for (i = 0; i < PL_STAGES; i++) {
-        for (c = 0; c < PL_COORDS; c++) {
-            d[i * PL_COORDS + c] += m ? PL(from_mode)[m][i][0] * part[2 * c] - PL(from_mode)[m][i][1] * part[2 * c + 1]
-                                      : PL(from_mode)[m][i][0] * part[c];
+        for (c = 0; c < PL_BLOCK; c++) {
+            d[i * PL_COORDS + from + c] += m ? PL(from_mode)[m][i][0] * part[2 * c]
+                                                   - PL(from_mode)[m][i][1] * part[2 * c + 1]
+                                             : PL(from_mode)[m][i][0] * part[c];
         }
     }
 }
@@ -275,7 +314,9 @@ static real PL(iterate)(const real y[PL_STATES], const real known[PL_STAGES][PL_
         }
     }
     for (m = 0; m < PL_MODES; m++) {
-        PL(add_mode)(f, m, right, d);
+        for (c = 0; c < PL_COORDS; c += PL_BLOCK) {
+            PL(add_mode)(f, m, c, right, d);
+        }
     }
     return PL(corrected)(dt, unit, d, k);
 }
@@ -294,6 +335,9 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
         const int c = PL(coord)(i);
         real most = 0;
         unit[i] = s->unit[i];
+        if (!PL_COUNTS(i)) {
+            continue;
+        }
         if (unit[i] * largest[PL_KIND(i)] < 1 && unit[i] > 0) {
             largest[PL_KIND(i)] = 1 / unit[i];
         }
@@ -315,7 +359,7 @@ static void PL(sizes)(const PL_TYPE *s, real dt, const real k[PL_UNKNOWNS], real
         largest[PL_KIND(i)] = most > largest[PL_KIND(i)] ? most : largest[PL_KIND(i)];
     }
     for (i = 0; i < PL_STATES; i++) {
-        if (s->unit[i] == 0 && unit[i] * largest[PL_KIND(i)] > 1048576) {
+        if (PL_COUNTS(i) && s->unit[i] == 0 && unit[i] * largest[PL_KIND(i)] > 1048576) {
             unit[i] = 1048576 / largest[PL_KIND(i)];
         }
     }
@@ -330,7 +374,7 @@ static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], c
     const int *const interval = PL(intervals)(s);
     const int fresh = PL_CONTACTS && !s->ready; /* units are not known yet */
     real previous = 0;
-    int i;
+    int i, found = 0;
 #if PL_MODES > 0
     PL(factors) factors;
     if (!PL(factorize)(jacobian, dt, &factors)) {
@@ -341,12 +385,12 @@ static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], c
     for (i = 0; i < PL_STAGES; i++) {
         PL(known_at)(s, PL_KNOWN, start, slope, PL(node)[i] * size, size / 2, known[i]);
     }
-    for (i = 0; i < 9; i++) {
+    for (i = 0; i < 9 + found; i++) {
         real change;
         PL(sizes)(s, dt, k, unit);
 #if PL_MODES > 0
         change = PL(iterate)(s->start, (const real (*)[PL_ROOM(PL_KNOWN)])known, interval, dt, unit, &factors, k);
-        if (i > fresh && change >= previous) {
+        if (i > fresh && change >= previous && !found) {
             return 0;
         }
 #else
@@ -355,14 +399,32 @@ static int PL(solve)(const PL_TYPE *s, const real start[], const real slope[], c
         if (!(change < (fresh && i == 0 ? (real)1e29 : (real)1e10))) {
             return 0;
         }
-        if (i > fresh &&
-            (change <= PL_SOLVED || (change < previous && change * change <= PL_SOLVED * (previous - change)))) {
+        if (found) {
             return 1;
         }
-        if (change <= PL_NO_CHANGE) {
+        found = change <= PL_NO_CHANGE ||
+                (i > fresh && (change <= PL_SOLVED
+                               || (change < previous && change * change <= PL_SOLVED * (previous - change))));
+        if (found && PL_ALIKE == 1) {
             return 1;
         }
         previous = change;
     }
     return 0;
+}
+
+/* States at rest so far: made: 1 over what the first that was tried makes of them.  Where several were too long that
+ * counts until they are larger: relative to themselves they would grow by small steps for long. */
+static inline void PL(leave_rest)(PL_TYPE *s, int rejected, const real unit[PL_STATES], real made[PL_STATES])
+{
+    int i;
+    for (i = 0; i < PL_STATES; i++) {
+        if (PL_COUNTS(i) && s->unit[i] == 0 && pl_magnitude(s->gain[i]) > 0) {
+            made[i] = made[i] > 0 ? made[i] : unit[i];
+            if (rejected > 3) {
+                s->unit[i] = made[i];
+                s->scale[i] = 1 / made[i];
+            }
+        }
+    }
 }

@@ -59,6 +59,12 @@
 #ifndef PL_COUNTS
 #define PL_COUNTS(i) 1
 #endif
+#ifndef PL_FOLLOWED
+#define PL_FOLLOWED 0
+#endif
+#ifndef PL_ALIGNED
+#define PL_ALIGNED 0
+#endif
 #ifndef PL_MOVED
 #define PL_MOVED 0
 #endif

@@ -7,7 +7,8 @@
  *                                at_low, size, per, want, scale, unit, back, stop, ready beside y, rest, t0, k, status
  *     PL_STATES, PL_COORDS       coordinates are of first or second order: states are these, then the velocities
  *     PL_STAGES, PL_MODES        of the collocation; by how many modes of its stages they are solved, 0: all at once
- *     PL_ENTRIES                 of the Jacobian that are not 0; PL_DIFFERENCES: all are, row by row, of differences
+ *     PL_BLOCK                   so many coordinates are solved for at once: all, or those that others derive from
+ *     PL_ENTRIES                 of their Jacobian that are not 0; PL_DIFFERENCES: all are, row by row, of differences
  *     PL_INPUTS, PL_KNOWN        samples; numbers that the equations read beside the state
  *     PL_SEGMENTS                of time, in each of which the loads have a formula: member leg; 1: just one
  *     PL_SWITCHING_FUNCTIONS     that choose formulas, with passage.h; PL_MAX_EVENTS, PL_MAX_SPLITS, PL_CHANGES,
@@ -17,6 +18,8 @@
  *     PL_ORDER                   of a series that takes turns with the collocation, with switches.h; 0: none
  *     PL_COLUMNS                 of poly and scale: states, then what stands beside them in a series
  *     PL_ARGUMENTS               of functions that a polynomial may not show, with PL_TRACE_READS, PL_RISE
+ *     PL_ALIGNED                 1: in models of derivatives: an internal step ends with step `until` of h
+ *     PL_FOLLOWED                1: models of derivatives begin where it is now: PL(exactly)
  *     PL_CROWDED                 an internal step is at most so long, in h; 0: as long as it will
  *     PL_H, PL_TOLERANCE, PL_SOLVED, PL_TRIES   [s]; relative; what Newton's method may leave; internal steps within h
  *
@@ -305,6 +308,11 @@ static real PL(limit)(PL_TYPE *s)
 #if PL_INPUTS > 0
     limit = ((real)(s->back + 1) - s->at) - s->at_low; /* the samples to come are not known */
     s->stop = PL_AT_STEP;
+#elif PL_ALIGNED
+    if ((real)(int64_t)(s->until - s->k) > PL(since)(s)) {
+        limit = ((real)(int64_t)(s->until - s->k) - PL(since)(s)) - s->at_low;
+        s->stop = PL_AT_STEP;
+    }
 #endif
 #if PL_SEGMENTS > 1
     for (; s->leg < PL_SEGMENTS - 1; s->leg++) {
@@ -355,22 +363,6 @@ static inline int PL(is_hidden)(const PL_TYPE *s, const real start[], const real
     (void)poly;
     return 0;
 #endif
-}
-
-/* States at rest so far: made: 1 over what the first that was tried makes of them.  Where several were too long that
- * counts until they are larger: relative to themselves they would grow by small steps for long. */
-static inline void PL(leave_rest)(PL_TYPE *s, int rejected, const real unit[PL_STATES], real made[PL_STATES])
-{
-    int i;
-    for (i = 0; i < PL_STATES; i++) {
-        if (s->unit[i] == 0 && pl_magnitude(s->gain[i]) > 0) {
-            made[i] = made[i] > 0 ? made[i] : unit[i];
-            if (rejected > 3) {
-                s->unit[i] = made[i];
-                s->scale[i] = 1 / made[i];
-            }
-        }
-    }
 }
 
 /* Whether a step of `size` h is as exact as it has to be; by what factor the next may be longer, or this has to be
@@ -430,7 +422,7 @@ static int PL(collocate)(PL_TYPE *s, const real start[], const real slope[], rea
     for (;;) {
         real known[PL_STAGES][PL_ROOM(PL_KNOWN)];
         real poly[PL_STAGES + 1][PL_COLUMNS], unit[PL_STATES], factor = rejected < 3 ? (real)0.25 : (real)0.0625;
-        const real size = s->want < limit ? s->want : limit;
+        const real size = PL(wanted)(s->want, limit);
         if ((*tried)++ == PL_TRIES) {
             return PL_TOO_MANY_STEPS;
         }

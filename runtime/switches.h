@@ -142,15 +142,14 @@ static int PL(expand_step)(PL_TYPE *s, const real start[], const real slope[], r
 		return PL_NOT_FINITE;
 	}
 #endif
-	PL(ahead)((const real (*)[PL_COLUMNS])s->poly, length < limit ? length : limit, s->gain);
+	PL(ahead)((const real (*)[PL_COLUMNS])s->poly, PL(wanted)(length, limit), s->gain);
 	if (!PL(ends)(s->start, s->gain)) {
 		return PL_NOT_FINITE;
 	}
 	s->want = length;
+	length = PL(wanted)(length, limit);
 	if (length < limit) {
 		s->stop = PL_AT_ERROR;
-	} else {
-		length = limit;
 	}
 	product = PL(product)(rates, length);
 	s->bounds = product > PL_STABLE ? s->bounds + 1 : 0;

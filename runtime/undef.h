@@ -25,6 +25,13 @@
 #undef PL_BOTH
 #undef PL_MOVED
 #undef PL_PROBED
+#undef PL_ALIGNED
+#undef PL_FOLLOWED
+#undef PL_BLOCK
+#undef PL_ALIKE
+#undef PL_EQUATIONS
+#undef PL_TURNS
+#undef PL_SHARE
 #undef PL_COUNTS
 #undef PL_OWN_OUTPUTS
 #undef PL_OWN_INPUTS

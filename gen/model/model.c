@@ -523,6 +523,7 @@ static void take_derivatives(void *context)
 	const struct again *again = &request->again;
 	add_derivatives(b->spec, again->derivatives_from, again->derivatives, again->jumps, again->remainder,
 			again->probe);
+	b->spec->joined.held = again->held;
 }
 
 /* Params that are varied; of tunable ones behind derivatives, which go through what is made of them. */

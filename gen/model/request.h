@@ -25,6 +25,7 @@ struct again {                      /* to build a model a second time, for build
 	bool jumps, remainder;      /* of formulas that jump, too; of the operator and the remainder each */
 	bool probe;                 /* with what says how long a series of theirs may be, */
 	int order;                  /* of this order; 0: as is best */
+	bool held;                  /* a collocation with lengths that they do not choose */
 	/* this param has that value, to see how the equations follow it; NULL: none has */
 	const char *varied;
 	mpq_srcptr value;

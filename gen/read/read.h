@@ -353,7 +353,7 @@ struct spec {                       /* what the text says, names resolved, nothi
 	int sensitivities;
 	struct sensitivity *sensitivity;
 	/* derivatives: coordinates before them, apart; behind them one that no param drives */
-	struct { int columns, own, stride; bool probe; } joined;
+	struct { int columns, own, stride; bool probe, held; } joined;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	struct { bool written, adopted; } units; /* dimensions are checked, unless they are another spec's */

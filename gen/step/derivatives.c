@@ -41,11 +41,11 @@ static bool has_jumps(const struct step *step)
 	       (step->model->remainder.smooth.kind == SMOOTH_JUMP || loads_change(&step->model->system));
 }
 
-/* Whether series are as long as a tolerance allows, for all columns alike: the derivatives behind a step are linear in
- * those before it, and backwards the same. */
+/* Whether series, or steps of a collocation, are as long as a tolerance allows, for all columns alike: the derivatives
+ * behind a step are linear in those before it, and backwards the same. */
 static bool holds_lengths(const struct step *step)
 {
-	return step->is.flow == FLOW_SERIES && step->taylor.expansion && !step->collocation &&
+	return (step->collocation || (step->is.flow == FLOW_SERIES && step->taylor.expansion)) &&
 	       step->model->truncation.adaptive && !step->taylor.switching && !goes_by_events(step->model) &&
 	       !has_jumps(step);
 }
@@ -57,9 +57,10 @@ static struct request request_of_derivatives(const struct step *step, int first,
 	request.external = false;
 	if (step->model->request.external)
 		request.sensitivity = external_columns(step->model);
+	const bool held = holds_lengths(step), series = held && !step->collocation;
 	request.again = (struct again){ .derivatives_from = first, .derivatives = count, .jumps = has_jumps(step),
-				  .remainder = step->is.flow == FLOW_RECIPE, .probe = holds_lengths(step),
-				  .order = holds_lengths(step) ? order_of_step(step) : 0 };
+				  .remainder = step->is.flow == FLOW_RECIPE, .probe = series, .held = held && !series,
+				  .order = series ? order_of_step(step) : 0 };
 	request.scheme = scheme_of_derivatives(step);
 	if (goes_apart(step))
 		request.prefix = format("%s_d%d", step->model->name, first);
@@ -141,16 +142,26 @@ static struct step *step_of(const struct step *step, int first, int count)
 	return made;
 }
 
+/* Nodes of a collocation solve the equations of all columns at once where masses move: not by lists, if it is up to
+ * that. A constraint may have a multiplier for each coordinate. */
+static int most_solved(const struct model *model)
+{
+	const int equations = model->written->n * (model->equations.correction ? 2 : 1);
+	return model->equations.moving_mass ? LISTED_EQUATIONS / equations - 1 : LIMIT_UNROLLED_STATES;
+}
+
 /* As many together as have a step that is unrolled: those share the loads' functions. Those of a series share the
  * model's own, too. Parts of a step that events split have tables of their size. */
 static int columns_together(const struct step *step)
 {
 	const struct model *model = step->model;
 	const int states = model->written->system.states, forces = 3 * model->remainder.force_columns;
-	const int most = LIMIT_UNROLLED_STATES * (step->is.flow == FLOW_SERIES ? 4 : 1);
+	const bool solves = step->collocation && holds_lengths(step);
+	const int most = LIMIT_UNROLLED_STATES * (step->is.flow == FLOW_SERIES || solves ? 4 : 1);
 	const bool splits = step->is.flow == FLOW_RECIPE && (has_jumps(step) || goes_by_events(model));
 	const int together = splits ? LIMIT_TUNED_BLOCK / (states + forces + 3) - 1 : most / states - 1;
-	return together > 1 ? together : 1;
+	const int least = solves && most_solved(model) < together ? most_solved(model) : together;
+	return least > 1 ? least : 1;
 }
 
 /* A delay moves the jumps of an input, those at samples that are held, and at the first one of a ramp. */

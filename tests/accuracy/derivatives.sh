@@ -240,9 +240,17 @@ backwards 'a column at a time' net.spec --sensitivity k
 backwards 'params of loads' eqs.spec --sensitivity w,F,x
 # A loop of bars: a seed alone does not fulfil what its constraints demand of derivatives. The starts and lengths of
 # series are held, by any tolerance; at rest they say nothing, and the fast mode of a pair does not move.
-for scheme in taylor/1e-3 taylor/1e-6 taylor/1e-12 radau/1e-12; do
+for scheme in taylor/1e-3 taylor/1e-6 taylor/1e-12 radau/1e-3 radau/1e-12 auto/1e-6; do
 	backwards "a loop by $scheme" "$root/models/four_bar.spec" --scheme "${scheme%/*}" --tolerance "${scheme#*/}" \
 		--sensitivity A,g
+done
+# Internal steps of the collocation that last many steps, or a part of one; with samples, and what a series turns to
+sed 's/^init .*/&\nsensitivity mu, x/; s/^step .*/step 1/' "$root/models/vanderpol_stiff.spec" >stiff.spec
+for scheme in radau/1e-3 radau/1e-6 radau/1e-9 auto/1e-3 auto/1e-6 auto/1e-9; do
+	set -- --scheme "${scheme%/*}" --tolerance "${scheme#*/}"
+	backwards "van der Pol by $scheme" stiff.spec "$@"
+	backwards "pendulums by $scheme" "$root/models/double_pendulum.spec" "$@" --sensitivity m1,g,a
+	backwards "a ramp by $scheme" ramp.spec "$@" --sensitivity m,v,u
 done
 for start in 0 0.5; do
 	printf '%s\n' 'model pair' 'param k = 9' "coord x, y" "init x = $start, y = $start" \

@@ -50,6 +50,8 @@ void emit_collocation_members(const struct emitter *e)
 	       "    int stop, ready;      /* where it ends, 1: a step of h, 2: a change of the loads%s; its polynomial "
 	       "may be extrapolated */\n",
 	    rows(e), has_switching(e) ? ", 3: a crossing" : "");
+	if (e->model->spec->joined.held)
+		say(e, "    uint64_t until;       /* an internal step ends with this step of h */\n");
 	if (loads_change(e->system))
 		say(e, "    int leg;              /* the segment of time that it is in */\n");
 	if (switches(e))
@@ -245,10 +247,18 @@ static void emit_passage_limits(const struct emitter *e)
 		say_macro(e, "CHOICES", integer_text(has_choices(by_series(e, e->step->taylor.switching))));
 }
 
+/* Whether models of derivatives begin their steps where it stands */
+static bool is_followed(const struct emitter *e)
+{
+	const struct derivatives *d = e->step->derivatives;
+	return d && d->blocks > 0 && d->block[0].step->model->spec->joined.held;
+}
+
 static void emit_include(const struct emitter *e)
 {
 	const struct expansion *x = e->step->taylor.expansion, *d = e->step->taylor.switching;
-	emit_sizes(e, "radau.h", { "STATES", e->system->states }, { "COORDS", e->system->n }, { "STAGES", stages(e) },
+	emit_sizes(e, "radau.h", { "STATES", e->system->states }, { "COORDS", e->system->n },
+		   { "BLOCK", e->step->collocation->motion->solved }, { "STAGES", stages(e) },
 		   { "MODES", splits(e) ? e->step->collocation->modes : 0 },
 		   { "ENTRIES", e->step->collocation->motion->entries },
 		   { "DIFFERENCES", e->step->collocation->motion->differences }, { "INPUTS", e->system->inputs },
@@ -259,8 +269,10 @@ static void emit_include(const struct emitter *e)
 		   { "WAYS", d ? d->functions + (meets_contacts(e) ? d->contacts->ways : 0) : 0 },
 		   { "ARGUMENTS", traces(e) ? e->step->taylor.unresolved->unresolved_functions : 0 },
 		   { "FLOORS", has_floors(e) }, { "CONSTRAINTS", e->model->equations.correction != NULL },
-		   { "MASSES", moving_masses(e) });
+		   { "MASSES", moving_masses(e) }, { "ALIGNED", e->model->spec->joined.held },
+		   { "FOLLOWED", is_followed(e) });
 	emit_moved_columns(e);
+	emit_counts_macro(e);
 	say(e, "#define PL_KIND(i) (%s)\n", kind_text(e, "(i)"));
 	emit_limits(e);
 	if (has_switching(e))
@@ -299,6 +311,8 @@ void emit_collocation_step(const struct emitter *e)
 	if (switches(e))
 		emit_series_beside(e);
 	emit_arguments(e);
+	if (e->model->spec->joined.held)
+		emit_counting(e);
 	emit_constraints(e);
 	emit_include(e);
 	emit_step_function(e);

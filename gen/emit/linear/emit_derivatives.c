@@ -303,6 +303,8 @@ static void emit_block_at(const struct emitter *e, const struct derivative_block
 static const char *end_of_series(const struct emitter *b)
 {
 	const struct truncation *t = truncation_of(b);
+	if (b->model->spec->joined.held)
+		return given_inputs(b) ? "1" : "((b)->size == 0 || ((b)->k % 8 == 0 && (b)->at - (b)->back >= -8))";
 	if (b->step->is.flow != FLOW_SERIES)
 		return "0";
 	return t->adaptive ? "((b)->served == (b)->valid)" : t->over > 1 ? "((b)->served == 0)" : "1";
@@ -335,10 +337,14 @@ static void emit_block_beside(const struct emitter *e, int number)
 		   { "PARAMS", tunables_of(b->model) ? tunables_of(b->model)->given : 0 },
 		   { "TUNED", b->step->is.tuned }, { "SEGMENTS", b->system->segments }, { "PLACES", has_place(b) },
 		   { "CONSTRAINTS", b->model->equations.correction != NULL },
-		   { "PROBED", b->model->spec->joined.probe }, { "FROM", block->first }, { "WIDE", block->columns },
+		   { "PROBED", b->model->spec->joined.probe }, { "ALIGNED", b->model->spec->joined.held },
+		   { "TURNS", b->step->taylor.expansion != NULL },
+		   { "FROM", block->first }, { "WIDE", block->columns },
 		   { "DECLARED", e->model->declared_outputs });
 	emit_moved_columns(b);
 	emit_counts_macro(b);
+	if (b->model->spec->joined.held)
+		say(b, "#define PL_SHARE 0.7  /* of a length that is to be more exact */\n");
 	say(e, "#define PL_OF(name) %s_##name\n"
 	       "#define PL_OF_TYPE %s\n"
 	       "#define PL_ENDED(b) %s\n"
@@ -540,11 +546,15 @@ static void emit_derivatives_of_sizes(const struct emitter *e, int row)
 	const struct derivatives *d = e->step->derivatives;
 	const bool around = is_around_core(e), by_phi = !around && is_linear_alone(e->step) && !e->step->is.tuned &&
 							!e->step->shown->no.phi && !has_peaks(e);
+	const bool beside = d->apart && d->blocks > 0 && !has_peaks(e) && !given_inputs(e);
+	const bool strides = beside && !around && (serves_rows(e) || e->beside[0].model->spec->joined.held);
+	if (strides)
+		say(e, "#define PL_ENDED(b) %s\n", end_of_series(&e->beside[0]));
 	emit_sizes(e, "derivatives.h", { "STATES", e->system->states },
 		   { "INPUTS", around ? e->model->delays->inputs : given_inputs(e) },
 		   { "OUTPUTS", e->model->outputs }, { "DERIVATIVES", d->columns }, { "SEEDED", d->seeded },
 		   { "SLOPED", d->seeded && e->ramps }, { "BESIDE", d->apart },
-		   { "STRIDE", d->apart && serves_rows(e) && !has_peaks(e) ? 8 : 1 },
+		   { "STRIDE", strides ? 8 : 1 },
 		   { "BY_PHI", by_phi }, { "BY_ROWS", by_phi && has_steady_outputs(e->model) },
 		   { "DECLARED", e->model->declared_outputs },
 		   { "SCALED", d->varied != NULL }, { "SEGMENTS", row ? e->model->system.segments : 1 },

@@ -38,12 +38,17 @@ int most_served(const struct emitter *e)
 	return e->system->inputs ? 1 : EXPANSION_SERVES;
 }
 
+bool holds_lengths(const struct emitter *e)
+{
+	return e->model->spec->joined.probe || e->model->spec->joined.held;
+}
+
 /* Do several states share a kind? Else each is measured by itself. */
 bool shares_kinds(const struct emitter *e)
 {
 	int count[3] = { 0 };
 	for (int i = 0; i < e->system->states; i++) {
-		if (e->model->spec->joined.probe && e->system->coord[i] >= e->model->spec->joined.own)
+		if (holds_lengths(e) && e->system->coord[i] >= e->model->spec->joined.own)
 			continue;
 		bool moved = i < e->system->n && e->system->velocity[i] >= 0;
 		count[moved ? 0 : i < e->system->n ? 2 : 1]++;
@@ -53,28 +58,29 @@ bool shares_kinds(const struct emitter *e)
 
 /* ---- the last terms ---- */
 
-static void emit_counts(const struct emitter *e)
+void emit_counting(const struct emitter *e)
 {
 	const int own = e->model->spec->joined.own, states = e->system->states;
+	const int measured = e->step->taylor.expansion ? e->step->taylor.expansion->measured : 0;
 	const int probe = own + e->model->spec->joined.columns * e->model->spec->joined.stride;
-	int *counts = ARRAY(int, (size_t)states);
-	if (!e->model->spec->joined.probe)
+	int *counts = ARRAY(int, (size_t)(states + measured));
+	if (!holds_lengths(e))
 		return;
 	for (int i = 0; i < states; i++)
 		counts[i] = e->system->coord[i] < own ? 1 : e->system->coord[i] < probe ? 0 : 2;
 	say(e, "\n/* What says how far a series holds: 1, a state; 2, a derivative by nothing; 0: others do not */\n");
-	emit_int_list(e, "counts", states, counts);
+	emit_int_list(e, "counts", states + measured, counts);
 }
 
 void emit_counts_macro(const struct emitter *e)
 {
-	if (e->model->spec->joined.probe)
+	if (holds_lengths(e))
 		say_macro(e, "COUNTS(i)", spell(e, "$n_counts[i]"));
 }
 
 void emit_reach_tables(const struct emitter *e)
 {
-	emit_counts(e);
+	emit_counting(e);
 	if (!truncation_of(e)->adaptive || e->system->inputs)
 		return;
 	int order = e->step->taylor.expansion->order, most = most_served(e);

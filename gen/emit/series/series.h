@@ -36,6 +36,8 @@ void emit_floors(const struct emitter *e);      /* which, over the tolerance: wh
 bool has_unresolved(const struct emitter *e);
 bool traces(const struct emitter *e);                            /* some of it by its argument */
 bool crowds(const struct emitter *e);                            /* there are loads that may cancel each other */
+bool holds_lengths(const struct emitter *e);                     /* of derivatives, which do not choose its steps */
+void emit_counting(const struct emitter *e);
 void emit_counts_macro(const struct emitter *e);                 /* in models of derivatives: PL_COUNTS(i) */
 void emit_unresolved_sizes(const struct emitter *e);             /* of what a series may not show, for reach.h */
 void emit_hidden_table(const struct emitter *e);

@@ -64,12 +64,17 @@ int whole_number(struct building *b, struct node *node, int low, int high, const
 	return number;
 }
 
+static void set_least_tolerance(const struct building *b, mpq_ptr least)
+{
+	mpq_set_ui(least, 1, b->request->single ? 1000000 : 1000000000000000);
+}
+
 static void evaluate_tolerance(struct building *b, struct node *node, struct place at)
 {
 	struct truncation *truncation = &b->model->truncation;
 	const bool single = b->request->single;
 	RATIONAL least = ZERO;
-	mpq_set_ui(least, 1, single ? 1000000 : 1000000000000000);
+	set_least_tolerance(b, least);
 	collect_constant(&b->collector, node, truncation->tolerance);
 	if (mpq_sgn(truncation->tolerance) <= 0 || mpq_cmp_ui(truncation->tolerance, 1, 1) >= 0)
 		error(at, "it is relative to the largest value of each state so far",
@@ -111,6 +116,18 @@ void evaluate_events(void *context)
 	b->model->most_events = whole_number(b, b->spec->request.events, 1, LIMIT_EVENTS, "the most events");
 }
 
+/* Where states alone say how long steps are: derivatives are less smooth */
+static void tighten(struct building *b)
+{
+	enum { LESS = 16 };
+	RATIONAL least = ZERO, tighter = ZERO;
+	set_least_tolerance(b, least);
+	mpq_set_ui(tighter, 1, LESS);
+	mpq_mul(tighter, tighter, b->model->truncation.tolerance);
+	if (mpq_cmp(tighter, least) > 0)
+		mpq_set(b->model->truncation.tolerance, tighter);
+}
+
 /* The order of a series, given or from its tolerance; the most steps within one h */
 void evaluate_truncation(void *context)
 {
@@ -142,6 +159,8 @@ void evaluate_truncation(void *context)
 		truncation->order = whole_number(b, order, LEAST_ORDER, MOST_ORDER, "an order");
 	truncation->over = steps_of_expansion(b);
 	choose_order(model, b->request->single);
+	if (b->request->again.held)
+		tighten(b);
 }
 
 void unit_of_expansion(const struct model *model, mpq_ptr unit)

@@ -33,7 +33,7 @@ struct motion_entry {               /* of the Jacobian, where it is not 0 */
 	const struct form *slope;
 };
 struct motion {
-	int coords;
+	int coords, solved;         /* the first of them, of which the Jacobian is wanted */
 	/* so many that stages are solved by their modes, and the Jacobian is that of the step's start */
 	bool apart;
 	/* per coordinate: without what depends on time alone in the linear part, which there is where it is driven;

@@ -44,13 +44,21 @@ static void add_entries(struct motion *m, const struct step *step, const struct 
 	const struct linear *system = &step->branch->system;
 	for (int state = 0; state < system->states; state++) {
 		const struct form *slope = slope_of(step, layout, row, state);
-		if (slope->terms == 0)
+		if (slope->terms == 0 || system->coord[state] >= m->solved)
 			continue;
 		*MORE(m->entry, m->entries) = (struct motion_entry){
 			.coord = coord, .of = system->coord[state],
 			.twice = state < system->n && system->velocity[state] >= 0, .slope = slope
 		};
 	}
+}
+
+/* Those whose Jacobian is wanted: of a model of derivatives its own, since that of each column is the same */
+static int solved_coords(const struct step *step)
+{
+	const int n = step->branch->system.n, own = step->model->spec->joined.own;
+	const bool alike = step->model->spec->joined.held && n == own * (step->model->spec->joined.columns + 1);
+	return alike ? own : n;
 }
 
 /* What loads and inputs give each coordinate's highest derivative */
@@ -130,12 +138,13 @@ void set_motion(const struct step *step, struct recurrences *r, bool slopes)
 
 static void add_full_entries(struct motion *m, const struct linear *system)
 {
-	for (int i = 0; i < m->coords; i++)
+	for (int i = 0; i < m->solved; i++)
 		for (int state = 0; state < system->states; state++)
-			*MORE(m->entry, m->entries) = (struct motion_entry){
-				.coord = i, .of = system->coord[state],
-				.twice = state < system->n && system->velocity[state] >= 0
-			};
+			if (system->coord[state] < m->solved)
+				*MORE(m->entry, m->entries) = (struct motion_entry){
+					.coord = i, .of = system->coord[state],
+					.twice = state < system->n && system->velocity[state] >= 0
+				};
 }
 
 static void find_entries(struct motion *m, const struct step *step)
@@ -161,13 +170,14 @@ static void find_entries(struct motion *m, const struct step *step)
 
 /* ---- the whole ---- */
 
-static bool any_listed(const struct step *step, const struct motion *m)
+/* Do more than that many equations give some of them? */
+static bool any_solved(const struct step *step, const struct motion *m, int equations)
 {
 	bool any = false, *seen = ARRAY(bool, (size_t)atoms_count(step->model->equations.atoms));
 	for (int i = 0; i < m->coords; i++)
 		for (const struct form_term **term = terms_within(m->force[i], seen); *term; term++) {
 			const struct atom *a = (*term)->basis.atom;
-			any = any || (a && a->kind == ATOM_SOLUTION && system_of(a, a->operand).n > LISTED_EQUATIONS);
+			any = any || (a && a->kind == ATOM_SOLUTION && system_of(a, a->operand).n > equations);
 		}
 	return any;
 }
@@ -181,7 +191,8 @@ struct motion *motion_of(const struct step *step)
 	for (int k = 0; k < system->segments; k++)
 		slopes[k] = augmented_matrix(&layout, system, k);
 	m->coords = system->n;
-	m->apart = system->n > MOST_TOGETHER;
+	m->solved = solved_coords(step);
+	m->apart = m->solved > MOST_TOGETHER;
 	m->force = ARRAY(const struct form *, system->n);
 	m->driven = ARRAY(bool, system->n);
 	if (has_contacts(step->model)) {
@@ -195,12 +206,13 @@ struct motion *motion_of(const struct step *step)
 	for (int i = 0; i < system->n; i++) {
 		const mpq_t *row = slopes[0] + highest_state(system, i) * layout.size;
 		m->force[i] = force_of(step, &layout, row);
-		if (!m->differences)
+		if (!m->differences && i < m->solved)
 			add_entries(m, step, &layout, row, i);
 	}
 	if (m->differences)
 		add_full_entries(m, system);
 	find_drive(m, step, &layout, slopes);
-	m->listed = any_listed(step, m);
+	m->listed = any_solved(step, m, LISTED_EQUATIONS);
+	m->apart = m->apart || (m->solved < m->coords && m->coords > MOST_TOGETHER && any_solved(step, m, 1));
 	return m;
 }
