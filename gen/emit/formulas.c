@@ -18,35 +18,15 @@ struct formulas {
 	struct tape_system *system; /* that are solved by lists */
 };
 
-/* ---- what a basis is called ---- */
+/* ---- what a coordinate is called ---- */
 
-static const char *coordinate_now(const struct emitter *e, const struct basis *basis)
+static const char *coordinate_now(const struct emitter *e, int coord, int order)
 {
 	const struct model *written = written_model(e->model);
-	if (basis->order > 0 && basis->order >= written->frame.coord[basis->index]->highest)
-		return format("accel%d", basis->index + 1);
-	int state = basis->order ? written->system.velocity[basis->index] : basis->index;
+	if (order > 0 && order >= written->frame.coord[coord]->highest)
+		return format("accel%d", coord + 1);
+	int state = order ? written->system.velocity[coord] : coord;
 	return e->local[e->model->reduction.place ? e->model->reduction.place[state] : state];
-}
-
-const char *basis_now(const struct emitter *e, const struct basis *basis)
-{
-	const char *text = "t";
-	int l;
-	switch (basis->kind) {
-	case BASIS_ONE:   return NULL;
-	case BASIS_PI:    return "3.141592653589793";
-	case BASIS_COORD: return coordinate_now(e, basis);
-	case BASIS_INPUT: return input_name(e, basis->index, basis->order);
-	default: break;
-	}
-	if (is_polynomial(basis->forcing)) {
-		for (int k = 1; k < basis->power; k++)
-			text = format("%s * t", text);
-		return text;
-	}
-	l = load_of_forcing(e->system, basis->forcing);
-	return format("load%d[%d]", l + 1, oscillates(basis->forcing) ? 2 * basis->power + basis->sine : basis->power);
 }
 
 /* ---- operands: from forms ---- */
@@ -113,11 +93,9 @@ static const char *operand(const void *context, const struct tape_node *n)
 {
 	const struct formulas *f = context;
 	const struct emitter *e = f->e;
-	struct basis basis = { .kind = n->op == TAPE_COORD ? BASIS_COORD : BASIS_INPUT, .index = n->index,
-			       .order = n->part };
 	switch (n->op) {
-	case TAPE_COORD:
-	case TAPE_INPUT:    return f->written ? written_operand(e, n) : basis_now(e, &basis);
+	case TAPE_COORD:    return f->written ? written_operand(e, n) : coordinate_now(e, n->index, n->part);
+	case TAPE_INPUT:    return f->written ? written_operand(e, n) : input_name(e, n->index, n->part);
 	case TAPE_LOAD:     return load_operand(e, n->index, n->part);
 	case TAPE_STATE:    return e->local[n->index];
 	case TAPE_SAMPLE:   return input_operand(e, n->index);

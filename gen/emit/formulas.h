@@ -16,7 +16,6 @@ enum formula_table { TABLE_NODE = LINEAR_TABLES, TABLE_EXCESS, TABLE_SOLVED };
  * chooses as interval[] says, the intervals of the step's expressions, else as the state is; conditions on time alone
  * as at the time that the C `when` is, NULL: at t */
 struct reading { bool written, by_intervals; const char *when; };
-const char *basis_now(const struct emitter *e, const struct basis *basis); /* its operand; NULL: 1 */
 /* What is to be formulas, all of it: what several read is computed once, under the name of a let where it has one. */
 struct formulas *formulas_new(const struct emitter *e, struct reading how, int count, const struct form *const *form);
 struct tape *formulas_tape(const struct formulas *f);             /* to set targets in */

@@ -24,6 +24,13 @@ static bool is_there(const struct emitter *e, int value)
 	return value % 2 == 0 || oscillates(e->model->remainder.split->forcing[value / 2].forcing);
 }
 
+/* Of a load that grows, decays or oscillates: split holds no powers of t */
+static const char *forcing_now(const struct emitter *e, int value)
+{
+	const struct forcing *forcing = e->model->remainder.split->forcing[value / 2].forcing;
+	return format("load%d[%d]", load_of_forcing(e->system, forcing) + 1, value % 2);
+}
+
 /* NAME_forcings: cos and sin of each now, times e^{a t} */
 static void emit_forcings(const struct emitter *e)
 {
@@ -39,7 +46,7 @@ static void emit_forcings(const struct emitter *e)
 	open_function(e, "Known loads now", "static void $n_forcings(const $n *s, double forcing[%d])", count);
 	emit_load_states(e, r.load, false);
 	for (int k = 0; k < count; k++)
-		say(e, "    forcing[%d] = %s;\n", k, is_there(e, k) ? basis_now(e, &form[k]->term[0].basis) : "0.0");
+		say(e, "    forcing[%d] = %s;\n", k, is_there(e, k) ? forcing_now(e, k) : "0.0");
 	close_function(e, "");
 }
 
