@@ -55,25 +55,29 @@ static double PL(noise_at)(const pl_guards *m, const double *row, const double *
 		   (PL(sizes_of)(m, row, size) + 3.0 * PL(sizes_of)(m, tangent, size) + pl_magnitude(b) + amplitude);
 }
 
-/* Whether guard k keeps below its limit from x to end, h on or less, as unmet.h has it */
-static int PL(keeps_off)(const pl_guards *m, int k, const double *x, const double *size, const double *end)
+/* Whether guard k keeps below its limit from x to end, h on or less, as unmet.h has it.  size: |x|.  g has what
+ * follow_guard goes on from */
+static int PL(keeps_off)(const pl_guards *m, int k, const double *x, const double *size, const double *end,
+						 PL(course) *g)
 {
 	const int row = m->guard[k].row;
-	const double from = PL_DOT(m->guards.row + row * PL_SIZE, x), to = PL_DOT(m->guards.row + row * PL_SIZE, end);
-	return (from > to ? from : to) + PL(sizes_of)(m, m->guards.chord_error + row * PL_SIZE, size)
+	g->from = PL_DOT(m->guards.row + row * PL_SIZE, x);
+	g->to = PL_DOT(m->guards.row + row * PL_SIZE, end);
+	g->off = PL_DOT(m->guards.chord_error + row * PL_SIZE, size);
+	return (g->from > g->to ? g->from : g->to) + g->off
 		   < m->limit[k] - 2e-15 * (pl_magnitude(m->limit[k]) + m->guards.amplitude[row]);
 }
 
-/* Of guard k from x to end, L h on.  size: |x| */
-static PL_APART void PL(follow_guard)(const pl_guards *m, int k, const double *x, const double *size,
-									  const double *end, double L, PL(course) *g)
+/* Of a guard that may not, L h on */
+static PL_APART void PL(follow_guard)(const pl_guards *m, int k, const double *size, double L, PL(course) *g)
 {
-	const int at = m->guard[k].row * PL_SIZE;
-	const double *const row = m->guards.row + at, limit = m->limit[k];
-	g->from = PL_DOT(row, x) - limit;
-	g->to = PL_DOT(row, end) - limit;
-	g->off = L * L * PL(sizes_of)(m, m->guards.chord_error + at, size);
-	g->noise = PL(noise_at)(m, row, m->guards.tangent + at, limit, m->guards.amplitude[m->guard[k].row], size);
+	const int row = m->guard[k].row;
+	const double limit = m->limit[k];
+	g->from -= limit;
+	g->to -= limit;
+	g->off *= L * L;
+	g->noise = PL(noise_at)(m, m->guards.row + row * PL_SIZE, m->guards.tangent + row * PL_SIZE, limit,
+							m->guards.amplitude[row], size);
 }
 
 /* Whether it certainly keeps below its limit, if it begins there: by its chord, or by its cubic, off by cubic_error */
@@ -83,14 +87,14 @@ static int PL(keeps_below)(const pl_guards *m, int k, const double *x, const dou
 	const int at = m->guard[k].row * PL_SIZE;
 	const double ends = g->from > g->to ? g->from : g->to;
 	double leaving, arriving, most;
-	if (ends + g->off < -g->noise) {
-		return 1;
+	if (!(ends < -g->noise) || ends + g->off < -g->noise) {
+		return ends < -g->noise;
 	}
 	leaving = g->from + L * PL_DOT(m->guards.tangent + at, x);
 	arriving = g->to - L * PL_DOT(m->guards.tangent + at, end);
 	most = leaving > arriving ? leaving : arriving;
 	most = most > ends ? most : ends;
-	return most + L * L * L * L * PL(sizes_of)(m, m->guards.cubic_error + at, size) < -g->noise;
+	return most + L * L * L * L * PL_DOT(m->guards.cubic_error + at, size) < -g->noise;
 }
 
 /* Whether nothing is to be decided at x: what is held is in its place, and all else, but for one switching function, is
@@ -127,16 +131,22 @@ static int PL(is_settled)(const pl_guards *m, int region, int but, const double 
 
 /* ---- along the step ---- */
 
+/* The slopes of a region, for an argument: compilers reach all entries of that from one address. */
+static PL_INLINE const double *PL(slopes_in)(const pl_guards *m, int which)
+{
+	return m->A + which * PL_SIZE * PL_SIZE;
+}
+
 /* d_k = (L h A)^k x/k!, the coefficients of x in parts of L h, to the first even order that adds less than sums of the
  * terms before it are rounded by; so do those behind it, which are products of it.  Returns that order. */
-static PL_APART int PL(powers)(const pl_guards *m, int which, double L, const double *x,
+static PL_APART int PL(powers)(const pl_guards *m, const double *A, double L, const double *x,
 							   double d[PL_MOST_TERMS][PL_MOST_SIZE])
 {
 	static const double inverse[17] = { /* 1/k */
 		1.0, 1.0, 0.5, 0.3333333333333333, 0.25, 0.2, 0.16666666666666666, 0.14285714285714285, 0.125,
 		0.1111111111111111, 0.1, 0.09090909090909091, 0.08333333333333333, 0.07692307692307693,
 		0.07142857142857142, 0.06666666666666667, 0.0625};
-	const double *const A = m->A + which * PL_SIZE * PL_SIZE, length = L * m->h;
+	const double length = L * m->h;
 	double power[PL_MOST_SIZE], next[PL_MOST_SIZE];
 	int i, j, k;
 	PL_ENTRIES
@@ -164,6 +174,7 @@ static PL_APART int PL(powers)(const pl_guards *m, int which, double L, const do
 		if (k < 6 || k % 2) {
 			continue;
 		}
+		PL_ENTRIES
 		for (i = 0; i < PL_SIZE; i++) {
 			const double size = pl_magnitude(d[0][i]) + pl_magnitude(d[1][i]) + pl_magnitude(d[2][i]);
 			if (!(pl_magnitude(d[k][i]) <= 0x1p-56 * size)) {
@@ -275,10 +286,10 @@ static int PL(first_met)(const pl_guards *m, int region, const double *x, const 
 	int k, order, met = -1, others = 0;
 	PL(course) g, one;
 	for (k = m->first[region]; k < last; k++) {
-		if (PL(keeps_off)(m, k, x, size, end)) {
+		if (PL(keeps_off)(m, k, x, size, end, &g)) {
 			continue;
 		}
-		PL(follow_guard)(m, k, x, size, end, 1.0, &g);
+		PL(follow_guard)(m, k, size, 1.0, &g);
 		if (!(g.from < -g.noise)) {
 			return -2;
 		}
@@ -303,11 +314,11 @@ static int PL(first_met)(const pl_guards *m, int region, const double *x, const 
 		about = root;
 		scale = 1.0625 * root + 0.015625;
 	}
-	order = PL(powers)(m, m->matrix[region], scale, x, d);
+	order = PL(powers)(m, PL(slopes_in)(m, m->matrix[region]), scale, x, d);
 	root = PL(root_of)(m, met, order, d, &one, about / scale);
 	if (!(root <= 1.0) && scale < 1.0) {
 		scale = 1.0;
-		order = PL(powers)(m, m->matrix[region], scale, x, d);
+		order = PL(powers)(m, PL(slopes_in)(m, m->matrix[region]), scale, x, d);
 		root = PL(root_of)(m, met, order, d, &one, about);
 	}
 	*when = root * scale;
@@ -319,10 +330,10 @@ static int PL(first_met)(const pl_guards *m, int region, const double *x, const 
 		return -2;
 	}
 	for (k = m->first[region]; others > 0 && k < last; k++) {
-		if (k == met || PL(keeps_off)(m, k, x, size, y)) {
+		if (k == met || PL(keeps_off)(m, k, x, size, y, &g)) {
 			continue;
 		}
-		PL(follow_guard)(m, k, x, size, y, *when, &g);
+		PL(follow_guard)(m, k, size, *when, &g);
 		if (!PL(keeps_below)(m, k, x, size, y, *when, &g)) {
 			return -2;
 		}
@@ -361,10 +372,10 @@ static int PL(goes_on)(const pl_guards *m, int region, int of, double L, int ord
 	PL(go_to)(m, order, d, 1.0, end);
 	for (k = m->first[region]; k < m->first[region + 1]; k++) {
 		PL(course) g;
-		if (PL(keeps_off)(m, k, x, size, end)) {
+		if (PL(keeps_off)(m, k, x, size, end, &g)) {
 			continue;
 		}
-		PL(follow_guard)(m, k, x, size, end, L, &g);
+		PL(follow_guard)(m, k, size, L, &g);
 		if (!PL(keeps_below)(m, k, x, size, end, L, &g)
 				&& !((of < 0 || m->guard[k].expression == of) && PL(leaves)(m, k, order, d, &g))) {
 			return 0;
@@ -509,7 +520,7 @@ static int PL(goes_alone)(const pl_guards *m, int region, int k, double L, doubl
 	if (!PL(is_settled)(m, behind, g->expression, x, size)) {
 		return -1;
 	}
-	order = PL(powers)(m, which, L, x, d);
+	order = PL(powers)(m, PL(slopes_in)(m, which), L, x, d);
 	if (g->impact >= 0 ? !PL(flies)(m, which, g->impact, L, x, size, d)
 			: PL(stands_twice)(m, g->expression, g->breakpoint - g->upward)
 			&& !PL(moves)(m, which, g, L, size, d)) {
@@ -532,7 +543,7 @@ static int PL(goes_through)(const pl_guards *m, int k, double when, double *x, p
 	for (i = 0; i < PL_SIZE; i++) {
 		size[i] = pl_magnitude(x[i]);
 	}
-	order = PL(powers)(m, c->matrix, 1.0 - when, x, d);
+	order = PL(powers)(m, PL(slopes_in)(m, c->matrix), 1.0 - when, x, d);
 	return PL(goes_on)(m, c->region, -1, 1.0 - when, order, d, size, x);
 }
 
