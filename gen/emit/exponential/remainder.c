@@ -147,7 +147,7 @@ static void emit_remainder_locals(const struct emitter *e, const struct reads *r
 		bool ramp = node && e->system->input[i].hold;
 		const char *more = ramp ? format(" + %s_node[node] * slope[%d]", e->name, i) : "";
 		if (r->input[i])
-			say(e, "    const double %s = u[%d]%s;\n", input_name(e, i, 0), i, more);
+			say(e, "    const double %s = %s%s;\n", input_name(e, i, 0), sample_now(e, i), more);
 		if (r->input[e->system->inputs + i])
 			say(e, "    const double %s = slope[%d];\n", input_name(e, i, 1), i);
 	}

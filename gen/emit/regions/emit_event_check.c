@@ -37,6 +37,7 @@ struct check {
 	int branch;                 /* of one region; -1: `which` */
 	struct region_tables full, row, off;
 	const char **x, **end, **size; /* of each entry of x: now, at the end; for bounds its size; NULL: gathered */
+	const char *const *whole;   /* now, with what is gathered for rows of states alone */
 };
 
 /* Without what stays */
@@ -109,7 +110,7 @@ static struct check check_of(const struct emitter *e, const struct pieces *p, co
 {
 	const bool own = e->model->params.retuned;
 	struct check l = { .own = own, .branch = branch, .row = rows_of_pieces(e, p), .x = moving(e, x),
-			  .end = moving(e, entries(e, "end%d")) };
+			  .end = moving(e, entries(e, "end%d")), .whole = x };
 	l.size = magnitudes(e, l.x);
 	l.full = steps_of_regions(e, p, own && branch >= 0 ? format("c->pieces[%d]", branch) : "factor");
 	l.off = tables_of_regions(e, p, own && branch >= 0 ? format("c->chord_off[%d]", branch) : "c->chord_off[which]",
@@ -128,7 +129,7 @@ static const char *end_text(const struct emitter *e, const struct check *l, int 
 	const char *added = NULL;
 	if (l->own && any_stays(e->step) && i < e->system->states)
 		added = l->branch < 0 ? format("c->added[which][%d]", i) : format("c->added[%d][%d]", l->branch, i);
-	return row_text(&l->full, i, l->x, added, 22);
+	return row_text(&l->full, i, i < e->system->states ? l->x : l->whole, added, 22);
 }
 
 static const char *bound_text(const struct emitter *e, const struct pieces *p, const struct check *l, int i, int indent)
