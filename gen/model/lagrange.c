@@ -320,6 +320,31 @@ static void add_guarded(void *context)
 	(a->energy->own ? add_derivative : add_energy)(a->b, a->energy, a->s, a->force);
 }
 
+/* A coordinate's derivative by one of the params */
+static struct form *slope_of_term(void *first, const struct form_term *term)
+{
+	struct form *slope = NEW(struct form);
+	struct basis basis = term->basis;
+	basis.index += *(const int *)first;
+	if (basis.kind == BASIS_COORD)
+		form_add_basis(slope, basis, term->factor);
+	return slope;
+}
+
+/* The equations of the derivatives have those of the model along them: forms that all columns share, where the
+ * derivative of an energy would give each term of an equation anew. */
+static void add_along(struct building *b, struct form **force)
+{
+	const struct spec *spec = b->spec;
+	for (int k = 0; k < spec->joined.columns + spec->joined.probe; k++) {
+		int first = spec->joined.own + k * spec->joined.stride;
+		struct differentiation *along = rates_new(&b->collector, slope_of_term, &first);
+		for (int j = 0; j < spec->joined.own; j++)
+			if (force[j])
+				add_to(&force[first + j], form_rate(along, force[j]), NULL);
+	}
+}
+
 struct form **lagrange_terms(struct building *b, struct segment_equations *s)
 {
 	struct form **force = ARRAY(struct form *, b->model->n);
@@ -328,6 +353,8 @@ struct form **lagrange_terms(struct building *b, struct segment_equations *s)
 	s->constraint = ARRAY(struct constraint, (size_t)b->spec->count.multipliers + 1);
 	for (int i = 0; i < b->spec->lagrange.energies; i++)
 		statement_guard(add_guarded, &(struct adding){ b, s, force, &b->spec->lagrange.energy[i] });
+	if (b->spec->joined.along)
+		add_along(b, force);
 	b->collector.keep = (unsigned)keep;
 	for (int j = 0; j < b->model->n; j++)
 		force[j] = force[j] ? force[j] : NEW(struct form);

@@ -240,6 +240,14 @@ static void name_coordinates(struct building *b)
 	}
 }
 
+/* Of a derivative that of what it is of: no energy may name it. */
+static int order_of_coordinate(const struct spec *spec, int coord)
+{
+	const int behind = spec->joined.along ? coord - spec->joined.own : -1;
+	const int of = behind < 0 ? coord : behind % spec->joined.stride;
+	return find_order(spec, of < spec->joined.own ? of : coord);
+}
+
 /* The states are the coordinates, then the velocities of those of second order. A vector is of one order. */
 static void name_states(struct building *b)
 {
@@ -251,7 +259,7 @@ static void name_states(struct building *b)
 	system->coord = ARRAY(int, 2 * n);
 	system->states = model->n;
 	for (int j = 0; j < model->n && model->n <= LIMIT_STATES && !model->relative; j++) {
-		int order = find_order(b->spec, j);
+		int order = order_of_coordinate(b->spec, j);
 		model->frame.coord[j]->highest =
 			order > model->frame.coord[j]->highest ? order : model->frame.coord[j]->highest;
 	}

@@ -352,8 +352,9 @@ struct spec {                       /* what the text says, names resolved, nothi
 	} tuned;
 	int sensitivities;
 	struct sensitivity *sensitivity;
-	/* derivatives: coordinates before them, apart; behind them one that no param drives */
-	struct { int columns, own, stride; bool probe, held; } joined;
+	/* derivatives: coordinates before them, apart; behind them one that no param drives; along: those of energies
+	 * say what a param does alone, and equations are derived along the states as forms */
+	struct { int columns, own, stride; bool probe, held, along; } joined;
 	struct { int needs; struct need *need; struct budget budget; } required;
 	struct mode_list modes;
 	struct { bool written, adopted; } units; /* dimensions are checked, unless they are another spec's */

@@ -229,6 +229,7 @@ struct varying {                    /* one derivative */
 	const struct sensitivity *of;
 	struct slope by;
 	struct slope event;         /* of what is watched for events, which move in time */
+	struct slope energy;        /* of energies: where forms are derived along the states, by the param alone */
 	const char *suffix;         /* of its symbols: k, x_0 */
 	int own, first;             /* components of coordinates: of the model, before those that are added */
 };
@@ -368,7 +369,7 @@ static void add_energy(struct varying *v, struct energy e)
 	const struct energy own = e;
 	e.behind = v->first;
 	e.own = v->own;
-	e.value = slope_by(own.value, v->by);
+	e.value = slope_by(own.value, v->energy);
 	e.of = own.multiplier;
 	e.multiplier = e.of ? v->by.moved[e.of->number] : NULL;
 	if (!is_zero_node(e.value))
@@ -376,7 +377,7 @@ static void add_energy(struct varying *v, struct energy e)
 	if (!own.point)
 		return;
 	e.value = own.value;
-	e.point = slope_by(own.point, v->by);
+	e.point = slope_by(own.point, v->energy);
 	if (!is_zero_node(e.point))
 		*MORE(spec->lagrange.energy, spec->lagrange.energies) = e;
 }
@@ -452,6 +453,13 @@ static void vary(struct varying *v, struct extent before)
 	v->event.known = ARRAY(struct node *, (size_t)before.symbols + 1);
 	if (before.timed)
 		add_time(v);
+	v->energy = v->by;
+	if (spec->joined.along) {
+		v->energy.moved = ARRAY(struct symbol *, (size_t)before.symbols + 1);
+		v->energy.known = ARRAY(struct node *, (size_t)before.symbols + 1);
+		if (v->of->symbol->kind == SYMBOL_INPUT)
+			v->energy.moved[v->of->symbol->number] = v->by.moved[v->of->symbol->number];
+	}
 	v->by.event = &v->event;
 	for (int i = 0; i < before.energies; i++)
 		add_energy(v, spec->lagrange.energy[i]);
@@ -501,6 +509,10 @@ void add_derivatives(struct spec *spec, int first, int count, bool jumps, bool r
 	for (struct symbol *s = spec->first; s; s = s->next)
 		s->peak = false;                      /* the model's own outputs say when they were largest */
 	spec->joined.probe = probe;
+	spec->joined.along = spec->lagrange.energies > 0 && spec->count.multipliers == 0 && spec->whens == 0 &&
+			     !jumps && !remainder;
+	for (int i = 0; i < spec->lagrange.energies; i++)
+		spec->joined.along &= spec->lagrange.energy[i].kind != 'Q';        /* which may be friction */
 	/* by nothing at all: any solution, if it does not start from 0 */
 	const struct sensitivity none = { spec->sensitivity[first].at, &nothing, 0, 0, nothing.name };
 	for (int i = first; i < first + count + probe; i++) {
