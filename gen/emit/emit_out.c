@@ -174,6 +174,7 @@ static void emit_some_outputs(const struct emitter *e)
 static void emit_motion_now(const struct emitter *e)
 {
 	const bool collocates = e->step->collocation != NULL;
+	const char *slope = e->ramps ? "s->slope" : "slope";    /* behind a step that of the ramps in it */
 	open_function(e, "What outputs read of the motion now, with what holds there",
 		      "static void $n_motion_now(const $n *s, double motion[%d])", motion_numbers(e));
 	say(e, "    $n_contact here = s->contact;\n"
@@ -184,11 +185,11 @@ static void emit_motion_now(const struct emitter *e)
 			   : "    if (!here.placed) {\n"
 			     "        $n then = *s;\n"
 			     "        $n_commit(&then);\n"
-			     "        (void)$n_look_again(&then, start, slope);\n"
+			     "        (void)$n_look_again(&then, start, %s);\n"
 			     "        here = then.contact;\n"
-			     "    }\n", e->system->inputs ? "s->u" : "NULL");
-	say(e, "    $n_motion_at(s, start, slope, 0.0, %s, %s, here.interval, s->y, motion);\n"
-	       "}\n", spell(e, collocates ? "$n_time(s) + 0x1p-20 * $N_H" : "$n_middle(s)"),
+			     "    }\n", collocates ? slope : e->system->inputs ? "s->u" : "NULL");
+	say(e, "    $n_motion_at(s, start, %s, 0.0, %s, %s, here.interval, s->y, motion);\n"
+	       "}\n", slope, spell(e, collocates ? "$n_time(s) + 0x1p-20 * $N_H" : "$n_middle(s)"),
 	    loads_change(e->system) ? "s->segment" : "0");
 }
 

@@ -593,3 +593,21 @@ const struct form **accelerations_by(struct building *b, const struct form *cons
 	}
 	return by;
 }
+
+const struct form **forces_of_accelerations(struct building *b, const mpq_t *acceleration)
+{
+	const int n = b->model->n;
+	const struct form **force = ARRAY(const struct form *, n);
+	for (int j = 0; j < n; j++) {
+		int row;
+		const struct linear_system *e = system_of_coord(b->full, j, &row);
+		struct form *sum = NEW(struct form);
+		for (int k = 0; e && k < e->n; k++) {
+			const int coord = e->written->highest[k].index;
+			if (coord < n && mpq_sgn(acceleration[coord]) != 0)
+				form_add_to(sum, e->M[row * e->n + k], acceleration[coord]);
+		}
+		force[j] = sum;
+	}
+	return force;
+}

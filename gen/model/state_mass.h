@@ -34,6 +34,8 @@ struct form *form_at_rest(struct building *b, const struct form *form); /* highe
 mpq_t *inverse_masses(const struct building *b, const struct segment_equations *s);
 /* M^-1 force (per residual) per coordinate: what it adds to the highest derivatives */
 const struct form **accelerations_by(struct building *b, const struct form *const *force);
+/* Per coordinate, the force on its equation that makes them, by M(q); none on equations that M(q) does not couple */
+const struct form **forces_of_accelerations(struct building *b, const mpq_t *acceleration);
 
 /* ---- newton.c: equations that are not linear in highest derivatives or multipliers ---- */
 

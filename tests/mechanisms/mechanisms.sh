@@ -59,6 +59,8 @@ check() {
 	values=$cases/$1.values title=$2 within=$3 spec=$cases/$1.spec
 	shift 3
 	chosen "$title" || return 0
+	sed -n 's/^samples //p' "$values" | tr ' ' '\n' >samples.csv
+	[ ! -s samples.csv ] || set -- --input samples.csv "$@"
 	"$plrun" "$@" "$spec" "$(sed -n 's/^at //p' "$values")" >run.csv 2>log &&
 		compared "$values" run.csv "$within" >log
 	result $? "$title"

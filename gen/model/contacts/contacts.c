@@ -163,6 +163,14 @@ static void refuse_in_output(const struct model *model, const struct output *out
 			refuse(CAN_CARRIED, model, output->value->start);
 }
 
+/* An acceleration, by its equation */
+static void refuse_in_row(const struct model *model, const struct output *output, const struct output *row, bool *seen)
+{
+	for (int c = 0; c < model->remainder.force_columns; c++)
+		if (mpq_sgn(row->force_column[c]) != 0)
+			refuse_in_output(model, output, model->schedule.operator[0].left[c], seen);
+}
+
 /* What rests has another acceleration than its equations say. */
 static void refuse_acceleration(const struct building *b, const struct output *output, const struct form *form,
 				bool *seen)
@@ -225,9 +233,12 @@ static void check_output(void *context)
 		refuse_acceleration(b, work->output, form, read);
 	if (work->output->left)
 		refuse_in_output(model, work->output, work->output->left, seen);
-	for (int c = 0; c < model->remainder.force_columns; c++)  /* an acceleration, by its equation */
-		if (mpq_sgn(work->output->force_column[c]) != 0)
-			refuse_in_output(model, work->output, model->schedule.operator[0].left[c], seen);
+	else
+		refuse_in_row(model, work->output, work->output, seen);
+	const struct reads reads = reads_of(model, work->output->left != NULL, &form);
+	for (int k = 0; k < model->n; k++)
+		if (reads.highest[k])
+			refuse_in_row(model, work->output, model->equations.highest[k], seen);
 }
 
 void check_contact_outputs(struct building *b)

@@ -273,6 +273,12 @@ static void check_jump(struct building *b, const struct when *when, const struct
 
 /* ---- bounces ---- */
 
+/* Constraints take from a direction what they do not allow, and a curved guard has none that lasts. */
+static bool may_bounce(const struct building *b, const struct impact_law *law)
+{
+	return !holds_atom(law->guard) && (b->spec->count.multipliers == 0 || !contact_moves(b, law->guard));
+}
+
 /* Whether each jump is v -> v - (1 + e) d s of velocities v, s the speed of the guard; then e and d */
 static bool find_bounce(struct building *b, struct impact_law *impact_law)
 {
@@ -444,12 +450,12 @@ static void build_impact(void *context)
 		if (when->restitution)
 			find_jumps(b, when, impact_law);
 		else
-			bounces = !contact_moves(b, impact_law->guard) && find_bounce(b, impact_law);
+			bounces = may_bounce(b, impact_law) && find_bounce(b, impact_law);
 		if (s > 0 && bounces != impact->bounces)
 			report_bounce_changes(b, when, s, bounces);
 		impact->bounces = bounces;
 		check_jump(b, when, impact_law);
-		impact->moves = bounces && b->spec->joined.columns > 0;
+		impact->moves = bounces && (b->spec->joined.columns > 0 || contact_moves(b, impact_law->guard));
 		if (bounces && !impact->moves)
 			still_jumps(b, impact_law);
 	}

@@ -230,11 +230,17 @@ static int moved_coord(const struct building *b, int column, int coord)
 	return b->spec->joined.own + column * b->spec->joined.stride + coord;
 }
 
+/* Those that are no derivatives of others */
+static int own_coordinates(const struct building *b)
+{
+	return b->spec->joined.columns > 0 ? b->spec->joined.own : b->model->n;
+}
+
 /* What f acts with on all coordinates: n, and n_k on their derivatives */
 static const struct form **with_slopes(struct building *b, const struct impact_law *law,
 				       const struct form *const *gradient)
 {
-	const int own = b->spec->joined.columns > 0 ? b->spec->joined.own : b->model->n;
+	const int own = own_coordinates(b);
 	const struct form **force = ARRAY(const struct form *, b->model->n);
 	for (int j = 0; j < b->model->n; j++)
 		force[j] = j < own ? gradient[j] : NEW(struct form);
@@ -351,10 +357,9 @@ static struct moving_contact *contact_along(struct building *b, const struct for
 {
 	const int n = b->model->n;
 	struct moving_contact *c = NEW(struct moving_contact);
-	*c = (struct moving_contact){ gradient_of(b, speed, 1), ARRAY(const struct form *, n),
+	*c = (struct moving_contact){ gradient_of(b, speed, 1), forces_of_accelerations(b, direction),
 				      ARRAY(const struct form *, n), form_at_rest(b, press), -1, ARRAY(double, n) };
 	for (int j = 0; j < n; j++) {
-		c->force[j] = NEW(struct form);
 		c->force_direction[j] = form_constant(direction[j]);
 		c->sample[j] = c->gradient[j]->terms ? 1 : 0;
 	}
@@ -365,7 +370,7 @@ void find_bounce_with_slopes(struct building *b, struct impact *impact)
 {
 	struct impact_law *law = impact->in;
 	mpq_t *all = rationals((size_t)b->model->n);
-	for (int j = 0; j < b->spec->joined.own; j++)
+	for (int j = 0; j < own_coordinates(b); j++)
 		mpq_set(all[j], law->direction[j]);
 	for (int k = 0; k < b->spec->joined.columns; k++) {
 		struct impact_slope *slope = &law->slope[k];
