@@ -51,6 +51,7 @@
 #undef pl_lanes_above
 #undef pl_lanes_accumulate
 #undef pl_lanes_all
+#undef pl_lanes_at
 #undef pl_lanes_below
 #undef pl_lanes_bits
 #undef pl_lanes_both
@@ -61,7 +62,9 @@
 #undef pl_lanes_kept
 #undef pl_lanes_larger
 #undef pl_lanes_load
+#undef pl_lanes_next
 #undef pl_lanes_peak
+#undef pl_lanes_put
 #undef pl_lanes_size
 #undef pl_lanes_smaller
 #undef pl_lanes_store

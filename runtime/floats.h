@@ -51,6 +51,7 @@
 #define pl_lanes_above pl_lanesf_above
 #define pl_lanes_accumulate pl_lanesf_accumulate
 #define pl_lanes_all pl_lanesf_all
+#define pl_lanes_at pl_lanesf_at
 #define pl_lanes_below pl_lanesf_below
 #define pl_lanes_bits pl_lanesf_bits
 #define pl_lanes_both pl_lanesf_both
@@ -61,7 +62,9 @@
 #define pl_lanes_kept pl_lanesf_kept
 #define pl_lanes_larger pl_lanesf_larger
 #define pl_lanes_load pl_lanesf_load
+#define pl_lanes_next pl_lanesf_next
 #define pl_lanes_peak pl_lanesf_peak
+#define pl_lanes_put pl_lanesf_put
 #define pl_lanes_size pl_lanesf_size
 #define pl_lanes_smaller pl_lanesf_smaller
 #define pl_lanes_store pl_lanesf_store

@@ -247,6 +247,22 @@ PL_LANES_INLINE void pl_lanes_store(real *to, pl_lanes all, size_t count)
 	}
 }
 
+/* All lanes of numbers in a row; where the next ones begin of `count` numbers, which fill lanes at least once: the last
+ * ones may be some of those before again. */
+PL_LANES_INLINE pl_lanes pl_lanes_at(const real *from)
+{
+	return pl_lanes_load(from, sizeof(pl_lanes) / sizeof(real));
+}
+PL_LANES_INLINE void pl_lanes_put(real *to, pl_lanes all)
+{
+	memcpy(to, &all, sizeof all);
+}
+PL_LANES_INLINE size_t pl_lanes_next(size_t at, size_t count)
+{
+	const size_t lanes = sizeof(pl_lanes) / sizeof(real);
+	return at + lanes == count ? count : at + 2 * lanes > count ? count - lanes : at + lanes;
+}
+
 /* The same number in every lane */
 PL_LANES_INLINE pl_lanes pl_lanes_all(real value)
 {

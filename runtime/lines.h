@@ -103,82 +103,76 @@ static real PL(inner_of_power)(const real *a, const real *c, int k, real e)
 /* ---- the same of like elements in lanes, `groups` of them: each sum in its order ---- */
 
 #define PL_AT_ONCE (sizeof(pl_lanes) / sizeof(real))
-/* Products of rows i of a and j of b, of group g */
-PL_LANES_INLINE pl_lanes PL(lanes_pair)(const real *a, int i, const real *b, int j, size_t g)
+/* sum += a b, of lanes from there on */
+PL_LANES_INLINE void PL(add_lanes)(pl_lanes *sum, const real *a, const real *b, const size_t groups)
 {
-	return pl_lanes_load(a + i * PL_NEXT + g * PL_AT_ONCE, PL_AT_ONCE) *
-		   pl_lanes_load(b + j * PL_NEXT + g * PL_AT_ONCE, PL_AT_ONCE);
-}
-
-PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, int k, real *to, const size_t groups)
-{
-	const real *const one = k > 5 && k % 2 == 0 ? b : a, *const other = one == a ? b : a; /* the first chain's */
-	pl_lanes sum[4], more[4];
-	int i = k / 2, j = k - i;
 	size_t g;
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
-		sum[g] = more[g] = pl_lanes_all(0);
-		if (i == j && i > 0) {
-			sum[g] = PL(lanes_pair)(a, i, b, i, g);
-		}
-	}
-	i -= i == j;
-	for (j = k - i; i > 0 && k <= 5; i--, j++) {
-		PL_LANES_UNROLL
-		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL(lanes_pair)(a, i, b, j, g) + PL(lanes_pair)(a, j, b, i, g);
-		}
-	}
-	for (; i > 0; i--, j++) {
-		PL_LANES_UNROLL
-		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL(lanes_pair)(one, i, other, j, g);
-			more[g] = more[g] + PL(lanes_pair)(one, j, other, i, g);
-		}
-	}
-	PL_LANES_UNROLL
-	for (g = 0; g < groups; g++) {
-		pl_lanes_store(to + g * PL_AT_ONCE, k > 5 ? sum[g] + more[g] : sum[g], PL_AT_ONCE);
+		sum[g] = sum[g] + pl_lanes_at(a + g * PL_AT_ONCE) * pl_lanes_at(b + g * PL_AT_ONCE);
 	}
 }
 
-PL_LANES_INLINE void PL(inner_square_lanes)(const real *a, int k, real *to, const size_t groups)
+PL_LANES_INLINE void PL(inner_lanes)(const real *a, const real *b, size_t k, real *to, const size_t groups)
 {
+	const size_t middle = k / 2 * PL_NEXT, end = k * PL_NEXT;
 	pl_lanes sum[4], more[4];
-	int i = (k - 1) / 2, j = k - i;
-	size_t g;
+	size_t i = middle, g;
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
 		sum[g] = more[g] = pl_lanes_all(0);
 	}
-	if (i > 4) {
-		for (; i > 1; i -= 2, j += 2) {
-			PL_LANES_UNROLL
-			for (g = 0; g < groups; g++) {
-				sum[g] = sum[g] + PL(lanes_pair)(a, i, a, j, g);
-				more[g] = more[g] + PL(lanes_pair)(a, i - 1, a, j + 1, g);
-			}
+	if (k % 2 == 0) { /* in the middle, the first of the first chain; the next is the other one's */
+		const real *const other = a;
+		PL(add_lanes)(sum, a + middle, b + middle, groups);
+		i -= PL_NEXT;
+		a = k > 5 ? b : a;
+		b = k > 5 ? other : b;
+	}
+	if (k <= 5) {
+		for (; i > 0; i -= PL_NEXT) {
+			PL(add_lanes)(sum, a + i, b + end - i, groups);
+			PL(add_lanes)(sum, a + end - i, b + i, groups);
 		}
 	}
-	for (; i > 0; i--, j++) {
-		PL_LANES_UNROLL
-		for (g = 0; g < groups; g++) {
-			sum[g] = sum[g] + PL(lanes_pair)(a, i, a, j, g);
-		}
+	for (; i > 0; i -= PL_NEXT) {
+		PL(add_lanes)(sum, a + i, b + end - i, groups);
+		PL(add_lanes)(more, a + end - i, b + i, groups);
 	}
 	PL_LANES_UNROLL
 	for (g = 0; g < groups; g++) {
+		pl_lanes_put(to + g * PL_AT_ONCE, k > 5 ? sum[g] + more[g] : sum[g]);
+	}
+}
+
+PL_LANES_INLINE void PL(inner_square_lanes)(const real *a, size_t k, real *to, const size_t groups)
+{
+	const size_t end = k * PL_NEXT;
+	pl_lanes sum[4], more[4];
+	size_t i = (k - 1) / 2 * PL_NEXT, g;
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		sum[g] = more[g] = pl_lanes_all(0);
+	}
+	if (k > 10) {
+		for (; i > PL_NEXT; i -= 2 * PL_NEXT) {
+			PL(add_lanes)(sum, a + i, a + end - i, groups);
+			PL(add_lanes)(more, a + i - PL_NEXT, a + end - i + PL_NEXT, groups);
+		}
+	}
+	for (; i > 0; i -= PL_NEXT) {
+		PL(add_lanes)(sum, a + i, a + end - i, groups);
+	}
+	PL_LANES_UNROLL
+	for (g = 0; g < groups; g++) {
+		const pl_lanes middle = pl_lanes_at(a + k / 2 * PL_NEXT + g * PL_AT_ONCE);
 		sum[g] = 2 * (sum[g] + more[g]);
-		if (k % 2 == 0) {
-			sum[g] = PL(lanes_pair)(a, k / 2, a, k / 2, g) + sum[g];
-		}
-		pl_lanes_store(to + g * PL_AT_ONCE, sum[g], PL_AT_ONCE);
+		pl_lanes_put(to + g * PL_AT_ONCE, k % 2 == 0 ? middle * middle + sum[g] : sum[g]);
 	}
 }
 
 /* Of one run; what does not fill lanes is made again with some before, or by itself */
-static void PL(inners_of_run)(const real *a, const real *b, int k, size_t count, real *to)
+static void PL(inners_of_run)(const real *a, const real *b, size_t k, size_t count, real *to)
 {
 	size_t done = 0, at;
 	for (; done + PL_AT_ONCE < count && count >= 4 * PL_AT_ONCE; done += 4 * PL_AT_ONCE) {
@@ -198,7 +192,7 @@ static void PL(inners_of_run)(const real *a, const real *b, int k, size_t count,
 		}
 	}
 	for (; done < count; done++) {
-		to[done] = a == b ? PL(inner_square)(a + done, k) : PL(inner)(a + done, b + done, k);
+		to[done] = a == b ? PL(inner_square)(a + done, (int)k) : PL(inner)(a + done, b + done, (int)k);
 	}
 }
 
@@ -207,7 +201,8 @@ static void PL(inners_of_turn)(const real *table, int k, real *to)
 	int i;
 	for (i = 0; i < 4 * PL_RUNS; i += 4) {
 		const size_t count = (size_t)PL(alike)[i + 3];
-		PL(inners_of_run)(table + PL(alike)[i], table + PL(alike)[i + 1], k + PL(alike)[i + 2], count, to);
+		const size_t order = (size_t)(k + PL(alike)[i + 2]);
+		PL(inners_of_run)(table + PL(alike)[i], table + PL(alike)[i + 1], order, count, to);
 		to += count;
 	}
 }

@@ -35,4 +35,32 @@ struct roll *roll_new(struct printing *p);
 /* The outs from this one up to the next line of C, whose place it returns; TAPE_NONE: that run is not long. */
 int roll_run(struct printing *p, int out);
 
+/* ---- loops.c: statements of it ---- */
+
+#define VALUES_PLACE "values_by_0[%d]"
+enum { PLACES = 4 };
+/* An operand or a value where a statement reads it, or what it sets: a pattern with # for each number in brackets; of a
+ * constant "#", and its text */
+struct leaf { const char *pattern, *number; int place[PLACES]; };
+
+struct statement {
+	const char *shape;          /* C, leaf k as @k. */
+	int leaves;
+	struct leaf *leaf;          /* the first is what it sets: */
+	tape_ref value;             /* TAPE_NONE: out `out` */
+	int out;
+};
+
+
+struct group { int count; const struct statement **member; };   /* all of one shape */
+struct blocks {                     /* not printed yet */
+	int count;
+	struct block *block;
+	int places;                 /* of values so far */
+	const bool *far;            /* per node: another run reads it */
+};
+/* They set and read what those that were added before set; the list is emptied. */
+void loops_add(struct printing *p, struct blocks *all, struct group *g);
+void loops_print(struct printing *p, struct blocks *all);
+
 #endif

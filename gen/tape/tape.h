@@ -186,7 +186,9 @@ struct tape_target {
 	bool locals_first;          /* before the first target is set, which what they read may be part of */
 	/* So many statements with no line between them are loops over tables, 0: never; none reads what others set. */
 	int rolls;
-	bool across; /* a loop over k of like elements: only TAPE_TABLE of `part` below 0 changes in it */
+	/* Above 0, as many as lanes have at most: a loop over k of like elements, which <lanes.h> is there for. Only
+	 * TAPE_TABLE of `part` below 0 changes in it. */
+	int across;
 	const struct tape_lanes *lanes; /* NULL: there are none */
 	bool rows_alike;            /* negative factors are added: rows that differ in numbers alone go side by side */
 };

@@ -95,7 +95,8 @@ static void print_series(const struct emitter *e, const struct recurrences *r, b
 	const struct lines *l = own_expansion(e)->lines;
 	const bool across = !locals_first && l && l->across;
 	const struct tape_target to = { .real = "double", .operand = operand, .size = "pl_magnitude",
-					.context = e, .indent = 4, .locals_first = locals_first, .across = across,
+					.context = e, .indent = 4, .locals_first = locals_first,
+					.across = !across ? 0 : e->model->request.single ? 16 : 8,
 					.rolls = locals_first || e->device ? 0 : across ? RUN_ALIKE : LONG_RUN };
 	tape_print(t, &to, e->to);
 }
