@@ -9,7 +9,7 @@
 #include <string.h>
 
 enum { N = 20, ORDER = 20, SECONDS = 6 };
-static const double belt = 0.1, hardest = 6, load = 4, w = 1.3, apart = 0.001, restitution = 0.9, hard = 1e4;
+static const double belt = 0.1, hardest = 6, load = 4, w = 1.3, spacing = 0.001, restitution = 0.9, hard = 1e4;
 
 static double mass_of(int i) { return 1 + 0.05 * (i * 3 % 7); }
 enum kind { BLOCKS, BALLS, PRESSED };
@@ -24,7 +24,7 @@ static double friction_of(int i) { return i == 0 ? hardest : 0.3 + 0.01 * (i * 7
 static void print_between(enum kind kind, int i)
 {
 	if (kind == BALLS)
-		printf("stop between x%d, x%d at %g restitution %g\n", i - 1, i, apart, restitution);
+		printf("stop between x%d, x%d at %g restitution %g\n", i - 1, i, spacing, restitution);
 	else if (kind == BLOCKS)
 		printf("spring 100 between x%d, x%d\nfriction %g between x%d, x%d\n", i - 1, i, friction_of(i), i - 1,
 		       i);
@@ -203,7 +203,7 @@ static wide beyond(const struct motion *m, int i, wide s)
 	if (m->kind == PRESSED)
 		return m->mode[i] ? -compared(i, q) : compared(i, q);
 	if (m->kind)
-		return compared(i, v) > 0 ? compared(i, q) - apart : -1;
+		return compared(i, v) > 0 ? compared(i, q) - spacing : -1;
 	return m->mode[i] == 0 ? fabsl(force[i]) - friction_of(i) : -m->mode[i] * sliding(i, v);
 }
 
@@ -211,7 +211,7 @@ static wide beyond(const struct motion *m, int i, wide s)
 static void strike(struct motion *m)
 {
 	for (int i = 1; i < N; i++) {
-		const wide speed = compared(i, m->v), off = compared(i, m->q) - apart;
+		const wide speed = compared(i, m->v), off = compared(i, m->q) - spacing;
 		if (off < -1e-15L || speed <= 0)
 			continue;
 		push(i, (1 + restitution) * speed / answer(i), m->v);

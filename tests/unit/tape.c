@@ -369,7 +369,7 @@ static void tape_text_of_loops(void **state)
 	tape_statement(t, "again();");
 	tape_set(t, "m[0][0]", tape_call(t, FN_SIN, x(t, 0)), 4, NULL);
 	assert_text_of(&target, t, "    double values_by_0[15];\n"
-				   "    int turn_by_0;\n"
+				   "    size_t turn_by_0;\n"
 				   LOOP("", "values_by_0[turn_by_0] = sin(y[2 * turn_by_0]);")
 				   LOOP("        static const short place_by_0[5] = {3, 1, 4, 6, 5};\n",
 					"values_by_0[5 + turn_by_0] = cos(y[place_by_0[turn_by_0]]);")
