@@ -224,7 +224,7 @@ static bool *needed_loads(const struct emitter *e)
 	return needed;
 }
 
-/* The inputs in x: in a step the samples that it is given, and the slopes of ramps */
+/* The inputs in x: in a step the samples that it is given, and the slopes of ramps; else the last ones */
 static void emit_inputs_in_x(const struct emitter *e, bool step)
 {
 	for (int i = 0; i < e->system->inputs; i++) {
@@ -234,7 +234,7 @@ static void emit_inputs_in_x(const struct emitter *e, bool step)
 		if (ramp && step)
 			say(e, "    x[%d] = %s;\n", at + 1, ramp_slope(e, of));
 		else if (ramp)
-			say(e, "    x[%d] = 0.0;\n", at + 1);
+			say(e, "    x[%d] = s->slope[%d];\n", at + 1, of);
 	}
 }
 
