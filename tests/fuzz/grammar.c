@@ -199,13 +199,12 @@ static char *initial(void)
 		for (int primes = 0; primes < coord[i].order; primes++)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 				if (drive == TURNS_FAR || (chance(70) && r < 3))
-                                    add(&all, text("%s%s = %.3f", *all ? ", " : "init ",
-                                                   derivative(i, coord[i].size ? r : -1, primes).spec,
-                                                   (below(1201) - 600) * (primes                     ? 0.002
-                                                                          : drive && class != LINEAR ? 0.0003
-                                                                                                     : 0.001) +
-                                                       (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
-		return *all ? text("%s\n", all) : all;
+					add(&all, text("%s%s = %.3f", *all ? ", " : "init ",
+						       derivative(i, coord[i].size ? r : -1, primes).spec,
+						       (below(1201) - 600) *
+							       (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) +
+						       (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
+	return *all ? text("%s\n", all) : all;
 }
 
 /* What no expression reads */
@@ -248,8 +247,8 @@ static void write_spec(FILE *file, const char *of, const char *given, const char
 	fprintf(file, "%s%s%s%s%s%s", initial(), spec_lets, operator, spec_equations, spec_outputs, stated);
 	if (chance(6))
 		fprintf(file, "let unread = %s + t\n", coord[0].size ? "2" : coord[0].name);
-		fprintf(file, "step %s\n",
-                (const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
+	fprintf(file, "step %s\n",
+		(const char *const[]){ "0.01", "1/64", "0.0125", "0.02" }[below(class >= SMOOTH ? 3 : 4)]);
 }
 
 static void write_c(FILE *file, const char *given)
