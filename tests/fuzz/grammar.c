@@ -195,14 +195,14 @@ static void declare(void)
 static char *initial(void)
 {
 	char *all = "";
+	const double slow = drive && class != LINEAR ? 0.0003 : 0.001;
 	for (int i = 0; i < coords; i++)
 		for (int primes = 0; primes < coord[i].order; primes++)
 			for (int r = 0; r < (coord[i].size ? coord[i].size : 1); r++)
 				if (drive == TURNS_FAR || (chance(70) && r < 3))
 					add(&all, text("%s%s = %.3f", *all ? ", " : "init ",
 						       derivative(i, coord[i].size ? r : -1, primes).spec,
-						       (below(1201) - 600) *
-							       (primes ? 0.002 : drive && class != LINEAR ? 0.0003 : 0.001) +
+						       (below(1201) - 600) * (primes ? 0.002 : slow) +
 						       (drive == TURNS_FAR ? motion(i) * (primes ? 100 : 1e4) : 0)));
 	return *all ? text("%s\n", all) : all;
 }
